@@ -1,0 +1,30 @@
+# SPDX-FileCopyrightText: 2026 The libscan authors
+# SPDX-License-Identifier: Apache-2.0
+
+# scan_add_library(NAME SOURCES... PUBLIC targets... PRIVATE targets...): the target scan_NAME with
+# the alias libscan::NAME. Foreign headers count as system headers: our warnings are for our code.
+function(scan_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(scan_${name} STATIC ${ARG_SOURCES})
+  add_library(libscan::${name} ALIAS scan_${name})
+  target_include_directories(scan_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                 $<INSTALL_INTERFACE:include>)
+  target_link_libraries(scan_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  target_compile_options(scan_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+endfunction()
+
+# scan_add_test(NAME SOURCES... LIBS targets...): one GoogleTest program, each of its tests in ctest.
+function(scan_add_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gtest_main)
+  target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow)
+  target_compile_definitions(${name} PRIVATE LIBSCAN_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                                             LIBSCAN_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  include(GoogleTest)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${ARG_TIMEOUT})
+endfunction()

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Laser triangulation: the stripe's place in each image row, then the light plane's intersection.
+#pragma once
+
+#include "libscan/core/raw_frames.h"
+#include "libscan/core/scan.h"
+
+namespace scan {
+
+enum class PeakMethod { centroid, gaussian, parabola };
+
+struct LaserLineOptions {
+  PeakMethod peak = PeakMethod::gaussian;
+  double threshold_sigmas = 6;  // a peak must stand so far above the row's background noise
+};
+
+// Scanner frame, sigma along the camera's ray, covariance from the triangulation's Jacobian.
+Scan acquire_laser_line(const StripeImages& frames, const LaserLineOptions& options = {});
+
+}  // namespace scan

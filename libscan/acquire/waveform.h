@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Pulse ranging: the arrival time of an echo in a digitised waveform.
+#pragma once
+
+#include "libscan/core/raw_frames.h"
+#include "libscan/core/scan.h"
+
+namespace scan {
+
+enum class PulseMethod { leading_edge, centroid, matched_filter };
+
+struct WaveformOptions {
+  PulseMethod pulse = PulseMethod::matched_filter;
+  double threshold_sigmas = 6;  // of the noise before the echo
+};
+
+// The first echo above the threshold of each ray.
+Scan acquire_waveform(const Waveforms& frames, const WaveformOptions& options = {});
+
+}  // namespace scan

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// What a result cost.
+#pragma once
+
+#include <chrono>
+
+namespace scan {
+
+// `seconds` of wall time. Peak memory belongs to the process: see peak_memory_mib().
+struct Cost {
+  double seconds = 0;
+};
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// Largest resident memory of this process so far, MiB (1 MiB = 2^20 bytes).
+double peak_memory_mib();
+
+}  // namespace scan

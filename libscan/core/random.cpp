@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/core/random.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace scan {
+namespace {
+
+// Knuth's product of uniforms, in log space one draw at a time; for small means.
+std::uint64_t poisson_by_product(RandomStream& random, double mean) {
+  const double limit = std::exp(-mean);
+  std::uint64_t count = 0;
+  for (double product = random.uniform(); product > limit; product *= random.uniform()) ++count;
+  return count;
+}
+
+// Transformed rejection with squeeze, PTRS (Hormann 1993, "The transformed rejection method for
+// generating Poisson random variables"), exact for mean >= 10.
+std::uint64_t poisson_by_rejection(RandomStream& random, double mean) {
+  const double log_mean = std::log(mean);
+  const double b = 0.931 + 2.53 * std::sqrt(mean);
+  const double a = -0.059 + 0.02483 * b;
+  const double inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);
+  const double v_r = 0.9277 - 3.6224 / (b - 2);
+  while (true) {
+    const double u = random.uniform() - 0.5;
+    const double v = random.uniform();
+    const double us = 0.5 - std::abs(u);
+    if (!(us > 0)) continue;
+    const double k = std::floor((2 * a / us + b) * u + mean + 0.43);
+    if (us >= 0.07 && v <= v_r) return static_cast<std::uint64_t>(k);
+    if (k < 0 || (us < 0.013 && v > us)) continue;
+    if (std::log(v) + std::log(inverse_alpha) - std::log(a / (us * us) + b) <=
+        -mean + k * log_mean - std::lgamma(k + 1))
+      return static_cast<std::uint64_t>(k);
+  }
+}
+
+}  // namespace
+
+std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> c,
+                                        std::array<std::uint32_t, 2> k) {
+  for (int round = 0; round < 10; ++round) {
+    const std::uint64_t p0 = 0xD2511F53ull * c[0];
+    const std::uint64_t p1 = 0xCD9E8D57ull * c[2];
+    c = {static_cast<std::uint32_t>(p1 >> 32) ^ c[1] ^ k[0], static_cast<std::uint32_t>(p1),
+         static_cast<std::uint32_t>(p0 >> 32) ^ c[3] ^ k[1], static_cast<std::uint32_t>(p0)};
+    k[0] += 0x9E3779B9u;
+    k[1] += 0xBB67AE85u;
+  }
+  return c;
+}
+
+RandomStream::RandomStream(std::uint64_t seed, std::uint32_t scan, std::uint64_t ray)
+    : key_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)},
+      counter_{0, scan, static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32)},
+      block_{} {}
+
+std::uint32_t RandomStream::bits32() {
+  if (used_ == 4) {
+    block_ = philox4x32(counter_, key_);
+    ++counter_[0];
+    used_ = 0;
+  }
+  return block_[used_++];
+}
+
+double RandomStream::uniform() {
+  const std::uint64_t high = bits32() >> 5, low = bits32() >> 6;
+  return static_cast<double>(high << 26 | low) * 0x1p-53;
+}
+
+double RandomStream::normal() {
+  if (has_spare_) {
+    has_spare_ = false;
+    return spare_normal_;
+  }
+  const double radius = std::sqrt(-2 * std::log(1 - uniform()));
+  const double angle = 2 * std::numbers::pi * uniform();
+  spare_normal_ = radius * std::sin(angle);
+  has_spare_ = true;
+  return radius * std::cos(angle);
+}
+
+std::uint64_t RandomStream::poisson(double mean) {
+  if (!(mean > 0)) return 0;
+  return mean < 12 ? poisson_by_product(*this, mean) : poisson_by_rejection(*this, mean);
+}
+
+}  // namespace scan

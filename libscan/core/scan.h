@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// One scan: what a device delivers from one place, and nothing that a device would not know.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "libscan/core/point_cloud.h"
+
+namespace scan {
+
+// Rows times columns of rays; {0, 0} when the device has no grid.
+struct RayGrid {
+  std::uint32_t rows = 0;
+  std::uint32_t columns = 0;
+};
+
+struct Scan {
+  std::string name;
+  PointCloud cloud;                          // scanner frame
+  std::vector<std::uint32_t> ray;            // index of each point's ray; empty: unknown
+  RayGrid grid;                              // ray = row * columns + column
+  std::map<std::string, std::size_t> misses;  // reason -> rays without a point
+  Pose world_from_scanner_guess = Pose::Identity();
+};
+
+}  // namespace scan

@@ -1,0 +1,281 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/io/json_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "libscan/core/error.h"
+#include "libscan/core/units.h"
+#include "libscan/io/atomic_file.h"
+
+namespace scan {
+namespace {
+
+using nlohmann::json;
+
+using Units = std::map<std::string, double>;
+const Units length_units = {{"_m", 1}, {"_mm", 1e-3}, {"_um", 1e-6}};
+const Units angle_units = {{"_rad", 1}, {"_deg", rad_from_deg(1)}};
+const Units time_units = {{"_s", 1}, {"_ms", 1e-3}, {"_us", 1e-6}, {"_ns", 1e-9}};
+const Units frequency_units = {{"_hz", 1}, {"_mhz", 1e6}};
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+std::string listed(std::string_view name, const Units& units) {
+  std::string text;
+  for (const auto& [suffix, scale] : units)
+    text += (text.empty() ? "" : ", ") + std::string(name) + suffix;
+  return text;
+}
+
+}  // namespace
+
+std::string nearest_word(std::string_view word, const std::vector<std::string>& words) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : words)
+    if (const std::size_t d = edit_distance(word, candidate); d < best_distance) {
+      best = candidate;
+      best_distance = d;
+    }
+  return best;
+}
+
+JsonReader::JsonReader(const json& object, std::string place)
+    : object_(&object), place_(std::move(place)) {
+  if (!object.is_object())
+    throw Error(Trouble::input,
+                place_ + ": must be an object { ... }, is " + std::string(object.type_name()));
+}
+
+void JsonReader::fail(std::string_view key, const std::string& what) const {
+  throw Error(Trouble::input, place_ + "/" + std::string(key) + ": " + what);
+}
+
+const json* JsonReader::find(std::string_view key) {
+  known_.emplace(key);
+  const auto found = object_->find(std::string(key));
+  return found == object_->end() ? nullptr : &*found;
+}
+
+bool JsonReader::has(std::string_view key) const { return object_->contains(std::string(key)); }
+
+bool JsonReader::has_quantity(std::string_view name) const {
+  for (const Units* units : {&length_units, &angle_units, &time_units, &frequency_units})
+    for (const auto& [suffix, scale] : *units)
+      if (has(std::string(name) + suffix)) return true;
+  return false;
+}
+
+double JsonReader::number(std::string_view key) {
+  const json* found = find(key);
+  if (!found) fail(key, "is missing");
+  if (!found->is_number()) fail(key, "must be a number, is " + found->dump());
+  const double number = found->get<double>();
+  if (!std::isfinite(number)) fail(key, "must be finite");
+  return number;
+}
+
+double JsonReader::number(std::string_view key, double otherwise) {
+  return find(key) ? number(key) : otherwise;
+}
+
+long JsonReader::integer(std::string_view key) {
+  const json* found = find(key);
+  if (!found) fail(key, "is missing");
+  if (!found->is_number_integer()) fail(key, "must be a whole number, is " + found->dump());
+  return found->get<long>();
+}
+
+long JsonReader::integer(std::string_view key, long otherwise) {
+  return find(key) ? integer(key) : otherwise;
+}
+
+bool JsonReader::boolean(std::string_view key, bool otherwise) {
+  const json* found = find(key);
+  if (!found) return otherwise;
+  if (!found->is_boolean()) fail(key, "must be true or false, is " + found->dump());
+  return found->get<bool>();
+}
+
+std::string JsonReader::text(std::string_view key) {
+  const json* found = find(key);
+  if (!found) fail(key, "is missing");
+  if (!found->is_string()) fail(key, "must be a text, is " + found->dump());
+  return found->get<std::string>();
+}
+
+std::string JsonReader::text(std::string_view key, const std::string& otherwise) {
+  return find(key) ? text(key) : otherwise;
+}
+
+std::vector<double> JsonReader::numbers(std::string_view key) {
+  const json* found = find(key);
+  if (!found) fail(key, "is missing");
+  if (!found->is_array()) fail(key, "must be a list of numbers, is " + found->dump());
+  std::vector<double> list;
+  for (const json& entry : *found) {
+    if (!entry.is_number() || !std::isfinite(entry.get<double>()))
+      fail(key, "must hold finite numbers only, has " + entry.dump());
+    list.push_back(entry.get<double>());
+  }
+  return list;
+}
+
+const json* JsonReader::find_quantity(std::string_view name, const Units& units, double& scale,
+                                      std::string& key) {
+  const json* found = nullptr;
+  for (const auto& [suffix, factor] : units) {
+    const std::string candidate = std::string(name) + suffix;
+    const json* here = find(candidate);
+    if (here && found) fail(candidate, "is given in two units");
+    if (here) {
+      found = here;
+      scale = factor;
+      key = candidate;
+    }
+  }
+  return found;
+}
+
+double JsonReader::quantity(std::string_view name, const Units& units, const double* otherwise) {
+  double scale = 1;
+  std::string key;
+  if (find_quantity(name, units, scale, key)) return scale * number(key);
+  if (otherwise) return *otherwise;
+  fail(name, "is missing (one of " + listed(name, units) + ")");
+}
+
+double JsonReader::length_m(std::string_view name) {
+  return quantity(name, length_units, nullptr);
+}
+double JsonReader::length_m(std::string_view name, double otherwise_m) {
+  return quantity(name, length_units, &otherwise_m);
+}
+double JsonReader::angle_rad(std::string_view name) {
+  return quantity(name, angle_units, nullptr);
+}
+double JsonReader::angle_rad(std::string_view name, double otherwise_rad) {
+  return quantity(name, angle_units, &otherwise_rad);
+}
+double JsonReader::time_s(std::string_view name) { return quantity(name, time_units, nullptr); }
+double JsonReader::time_s(std::string_view name, double otherwise_s) {
+  return quantity(name, time_units, &otherwise_s);
+}
+double JsonReader::frequency_hz(std::string_view name) {
+  return quantity(name, frequency_units, nullptr);
+}
+
+std::vector<double> JsonReader::lengths_m(std::string_view name) {
+  double scale = 1;
+  std::string key;
+  if (!find_quantity(name, length_units, scale, key))
+    fail(name, "is missing (one of " + listed(name, length_units) + ")");
+  auto list = numbers(key);
+  for (double& entry : list) entry *= scale;
+  return list;
+}
+
+std::vector<double> JsonReader::frequencies_hz(std::string_view name) {
+  double scale = 1;
+  std::string key;
+  if (!find_quantity(name, frequency_units, scale, key))
+    fail(name, "is missing (one of " + listed(name, frequency_units) + ")");
+  auto list = numbers(key);
+  for (double& entry : list) entry *= scale;
+  return list;
+}
+
+Eigen::Vector3d JsonReader::vector_m(std::string_view name) {
+  const auto list = lengths_m(name);
+  if (list.size() != 3) fail(name, "must have three numbers, has " + std::to_string(list.size()));
+  return {list[0], list[1], list[2]};
+}
+
+Eigen::Vector3d JsonReader::vector_m(std::string_view name, const Eigen::Vector3d& otherwise_m) {
+  double scale = 1;
+  std::string key;
+  return find_quantity(name, length_units, scale, key) ? vector_m(name) : otherwise_m;
+}
+
+JsonReader JsonReader::object(std::string_view key) {
+  const json* found = find(key);
+  if (!found) fail(key, "is missing");
+  return JsonReader(*found, place_ + "/" + std::string(key));
+}
+
+std::vector<JsonReader> JsonReader::objects(std::string_view key) {
+  const json* found = find(key);
+  if (!found) fail(key, "is missing");
+  if (!found->is_array()) fail(key, "must be a list of objects");
+  std::vector<JsonReader> list;
+  for (std::size_t i = 0; i < found->size(); ++i)
+    list.emplace_back((*found)[i], place_ + "/" + std::string(key) + "/" + std::to_string(i));
+  return list;
+}
+
+const json& JsonReader::value(std::string_view key) {
+  const json* found = find(key);
+  if (!found) fail(key, "is missing");
+  return *found;
+}
+
+Pose JsonReader::placement() {
+  const Eigen::Vector3d position = vector_m("position", Eigen::Vector3d::Zero());
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  if (find("rotation_deg")) {
+    const auto angles = numbers("rotation_deg");
+    if (angles.size() != 3) fail("rotation_deg", "must have three angles about x, y, z");
+    for (int axis = 0; axis < 3; ++axis)
+      rotation = Eigen::AngleAxisd(rad_from_deg(angles[axis]), Eigen::Vector3d::Unit(axis))
+                     .toRotationMatrix() *
+                 rotation;
+  }
+  return make_pose(rotation, position);
+}
+
+std::vector<std::string> JsonReader::keys() const {
+  std::vector<std::string> names;
+  for (const auto& [key, value] : object_->items()) names.push_back(key);
+  return names;
+}
+
+void JsonReader::finish() const {
+  for (const auto& [key, value] : object_->items()) {
+    if (known_.contains(key)) continue;
+    const std::string near =
+        nearest_word(key, std::vector<std::string>(known_.begin(), known_.end()));
+    throw Error(Trouble::input, place_ + "/" + key + ": unknown key",
+                near.empty() ? "" : "did you mean '" + near + "'?");
+  }
+}
+
+json read_json(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  try {
+    return json::parse(text, nullptr, true, true);
+  } catch (const json::parse_error& error) {
+    const std::size_t end = std::min<std::size_t>(error.byte, text.size());
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(end), '\n');
+    throw Error(Trouble::input, path.string() + ": not valid JSON near line " +
+                                    std::to_string(line) + " (byte " + std::to_string(error.byte) +
+                                    ")");
+  }
+}
+
+}  // namespace scan

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Scans, clouds and meshes by file name; the format follows the ending.
+#pragma once
+
+#include <filesystem>
+
+#include "libscan/core/mesh.h"
+#include "libscan/core/scan.h"
+
+namespace scan {
+
+// .ply .pcd .xyz .txt .asc .npy: points with what else the file knows. A PLY with a `range_grid`
+// element (Stanford) gets its grid and ray indices; one that libscan wrote gets everything back. The
+// name is the file's stem. Points that are not finite are dropped and counted in
+// misses["not finite"]. Throws scan::Error (input) for a file with no valid point.
+Scan read_scan(const std::filesystem::path& path);
+
+// .ply keeps everything of a Scan (misses, grid, guess as comments); .pcd and .xyz keep points,
+// normals and intensity. Written whole or not at all.
+void write_scan(const std::filesystem::path& path, const Scan& scan);
+
+// .ply .obj .stl .off .glb .gltf: a triangle mesh, vertices welded for formats without topology (STL).
+// scan::Error (input) if there are no triangles.
+Mesh read_mesh(const std::filesystem::path& path);
+
+// .ply .obj .stl .off; written whole or not at all.
+void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
+
+// True if the file holds triangles (a mesh), false if points only.
+bool holds_triangles(const std::filesystem::path& path);
+
+}  // namespace scan

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// What every reconstruction method returns.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "libscan/core/cost.h"
+#include "libscan/core/mesh.h"
+
+namespace scan {
+
+enum class SolveStop { converged, iteration_limit, direct };
+std::string_view name_of(SolveStop stop);
+
+struct SurfaceResult {
+  Mesh surface;
+  std::vector<double> support_m;  // per vertex: distance to the nearest data point
+  double finest_cell_m = 0;
+  std::size_t unknowns = 0;
+  int iterations = 0;
+  double relative_residual = 0;
+  SolveStop stop = SolveStop::iteration_limit;
+  std::size_t invalid_points = 0;  // not finite or without a normal, left out
+  Cost cost;
+};
+
+}  // namespace scan

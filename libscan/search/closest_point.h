@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// The nearest point of a triangle mesh, exact in double precision.
+#pragma once
+
+#include <memory>
+
+#include "libscan/core/mesh.h"
+
+namespace scan {
+
+struct ClosestPoint {
+  Eigen::Vector3d point;
+  std::uint32_t triangle = 0;
+  double distance_m = 0;
+};
+
+// Nearest point of one triangle (Ericson 2005, section 5.1.5); degenerate triangles are segments or
+// points.
+Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
+                                          const Eigen::Vector3d& b, const Eigen::Vector3d& c);
+
+// A bounding-volume tree over a mesh's triangles.
+class MeshSearch {
+ public:
+  // Throws scan::Error (input) for a mesh without triangles.
+  explicit MeshSearch(const Mesh& mesh);
+  ~MeshSearch();
+  MeshSearch(MeshSearch&&) noexcept;
+  MeshSearch& operator=(MeshSearch&&) noexcept;
+
+  // Nearest point; the lowest triangle among equally near ones.
+  ClosestPoint closest(const Eigen::Vector3d& query) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace scan

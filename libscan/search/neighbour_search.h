@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Neighbour search: one concept, five models, the same answers.
+//
+// Answers are decided in double precision; among equally near points the lowest index comes first.
+// Points that are not finite are never returned. To add a model: 1. a class that satisfies the
+// concept; 2. its name in SearchMethod and AnySearch; 3. nothing more: search_test.cpp walks the
+// variant against brute force.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace scan {
+
+struct Neighbour {
+  std::uint32_t index = 0;
+  double distance2_m2 = 0;
+  friend bool operator==(const Neighbour&, const Neighbour&) = default;
+};
+
+// `nearest`: within max_distance_m (inclusive), or none. `k_nearest`: up to k, `within`: all within
+// the radius (inclusive); both sorted by (distance, index) and written over `found`. The query must
+// be finite. All are safe to call from many threads.
+template <class S>
+concept NeighbourSearch =
+    requires(const S& search, const Eigen::Vector3d& query, std::size_t k, double distance_m,
+             std::vector<Neighbour>& found) {
+      { search.size() } -> std::convertible_to<std::size_t>;
+      { search.nearest(query, distance_m) } -> std::same_as<std::optional<Neighbour>>;
+      { search.k_nearest(query, k, found) } -> std::same_as<void>;
+      { search.within(query, distance_m, found) } -> std::same_as<void>;
+    };
+
+inline constexpr double unlimited_m = std::numeric_limits<double>::infinity();
+
+}  // namespace scan

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// How far estimated poses are from the true ones.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "libscan/core/pose.h"
+#include "libscan/verify/verdict.h"
+
+namespace scan {
+
+struct PoseError {
+  double rotation_rad = 0;
+  double translation_m = 0;  // at the centroid of the scan's points
+  double moved_points_rms_m = 0;
+};
+
+// Per scan, after the one rigid motion of the whole set (weighted by points) that fits estimated to
+// true poses best, since the world frame of an alignment is free. `points_in_scanner[i]` are points of
+// scan i at which the error is felt.
+std::vector<PoseError> pose_errors(std::span<const Pose> estimated, std::span<const Pose> truth,
+                                   std::span<const std::vector<Eigen::Vector3d>> points_in_scanner);
+
+// The gauge motion that pose_errors removes: true_from_estimated_world.
+Pose gauge(std::span<const Pose> estimated, std::span<const Pose> truth,
+           std::span<const std::vector<Eigen::Vector3d>> points_in_scanner);
+
+// rotation_error, translation_error, pose_error_rms (largest over scans) and their means.
+std::vector<Measurement> summarise(const std::vector<PoseError>& errors);
+
+}  // namespace scan

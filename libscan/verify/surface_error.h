@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// How far a measured surface or cloud lies from the true surface, and the other way round.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libscan/core/mesh.h"
+#include "libscan/verify/truth.h"
+#include "libscan/verify/verdict.h"
+
+namespace scan {
+
+// Distances to a TrueSurface, prepared once. Analytic shapes by their own field, meshes exactly by
+// point and triangle.
+class TrueDistance {
+ public:
+  explicit TrueDistance(const TrueSurface& surface);
+  ~TrueDistance();
+  TrueDistance(TrueDistance&&) noexcept;
+
+  struct Nearest {
+    Eigen::Vector3d point;
+    Eigen::Vector3d normal;  // outward, unit
+    double signed_distance_m;  // positive outside, by the side of the normal
+  };
+  Nearest nearest(const Eigen::Vector3d& x_in_world) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+struct SurfaceErrorOptions {
+  std::size_t samples = 200'000;   // drawn on each surface that is not a point set
+  std::uint64_t seed = 1;
+  double f_score_threshold_m = 0;  // 0: one hundredth of the truth's bounding-box diagonal
+  // Completeness counts only truth samples within this distance of some `seen` point; empty: all.
+  std::span<const Eigen::Vector3d> seen_points = {};
+  double seen_distance_m = 0;
+};
+
+// accuracy_mean, _rms, _p95, _max (measured to truth, unsigned), completeness_mean, _rms, _p95, _max
+// (truth to measured), f_score, normal_error_mean (rad, at the measured samples).
+std::vector<Measurement> surface_error(const Mesh& measured, const TrueSurface& truth,
+                                       const SurfaceErrorOptions& options = {});
+std::vector<Measurement> cloud_error(const PointCloud& measured, const TrueSurface& truth,
+                                     const SurfaceErrorOptions& options = {});
+
+// Signed deviation of each point from the truth, metres, for colour maps and histograms.
+std::vector<double> deviations_m(std::span<const Eigen::Vector3d> points, const TrueSurface& truth);
+
+// Samples of a true surface, uniform by area, with outward normals: meshes by triangle; shapes by
+// projecting a dense isotropic set of points onto the zero set. Points inside another solid of the
+// union are left out.
+std::vector<SurfaceSample> sample_truth(const TrueSurface& truth, std::size_t count,
+                                        std::uint64_t seed);
+
+// range_error_bias, range_error_rms, range_error_p95 (m, along the ray), ray_hit_fraction of the rays
+// that truly hit, and normalised_range_error_rms (range error over sigma; 1 is honest).
+std::vector<Measurement> range_error(const PointCloud& cloud_in_scanner,
+                                     std::span<const std::uint32_t> ray, const ScanTruth& truth);
+
+// components, boundary_edges, non_manifold_edges, genus.
+std::vector<Measurement> topology(const Mesh& mesh);
+
+}  // namespace scan

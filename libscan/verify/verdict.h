@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Measurements against limits.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scan {
+
+// One figure. `over` says what it was taken over (sample, denominator); `count` how many entered.
+struct Measurement {
+  std::string name;
+  double value = 0;
+  std::string unit;  // "m", "rad", "1" or "count"
+  std::string over;
+  std::size_t count = 0;
+  std::optional<double> limit;
+  std::string relation;  // "<=", ">=" or "==" when there is a limit
+  std::string reason;    // of the limit
+  bool pass = true;      // true without a limit; NaN never passes a limit
+};
+
+// `value` and `unit` in SI (metres, radians) as Measurement has them.
+struct Limit {
+  std::string name;
+  std::string relation;
+  double value = 0;
+  std::string reason;
+};
+
+struct Verdict {
+  std::vector<Measurement> measurements;
+  bool pass = true;
+};
+
+// Attaches limits to the measurements of the same name. Throws scan::Error (input) for a limit whose
+// name was not measured, with the nearest name as a hint.
+Verdict judge(std::vector<Measurement> measurements, const std::vector<Limit>& limits);
+
+}  // namespace scan

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// A laser-line triangulation scanner on a stage or turntable.
+#pragma once
+
+#include <vector>
+
+#include "libscan/core/raw_frames.h"
+#include "synth/detector.h"
+#include "synth/ray_caster.h"
+#include "synth/scanners/render_address.h"
+
+namespace scan::synth {
+
+// The scanner frame is the camera's frame at the middle of the sweep. The laser stands at
+// (baseline_m, 0, 0) of the camera frame; its plane contains the camera's y direction and is turned by
+// triangulation_rad from the optical axis towards it: it crosses the axis at
+// z = baseline / tan(triangulation).
+struct LaserLine {
+  Camera camera;
+  double baseline_m = 0.1;
+  double triangulation_rad = 0.5;
+  double fan_rad = 0.8;           // full opening of the laser's fan
+  double beam_radius_m = 1e-4;    // 1/e^2 radius of the Gaussian across the plane (constant)
+  double peak_electrons = 5000;   // at the stripe's centre on a white target facing the camera, at focus
+  // Either the head moves by `step_m` along `stage_direction` (camera frame), or it turns about an axis
+  // (a point and a direction in the camera frame) by `turn_rad` per step, as a turntable does.
+  int steps = 200;
+  double step_m = 5e-4;
+  Eigen::Vector3d stage_direction = Eigen::Vector3d::UnitX();
+  double turn_rad = 0;
+  Eigen::Vector3d turn_axis = Eigen::Vector3d::UnitY();
+  Eigen::Vector3d turn_centre_m = Eigen::Vector3d::Zero();
+  int sub_rays = 1;  // per pixel side
+  Sensor sensor;
+  double min_range_m = 0;
+  double max_range_m = 1e9;
+};
+
+void check(const LaserLine& scanner);
+RawFrames render(const LaserLine& scanner, const RayCaster& caster, const Pose& world_from_scanner,
+                 const RenderAddress& address, const DetectorEffects& effects);
+// The true ray of (row, step): where the light plane meets the surface in that camera row.
+std::vector<RayTruth> true_rays(const LaserLine& scanner, const RayCaster& caster,
+                                const Pose& world_from_scanner);
+
+}  // namespace scan::synth

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Two rectified cameras, with or without a random-dot projector.
+#pragma once
+
+#include <vector>
+
+#include "libscan/core/raw_frames.h"
+#include "synth/detector.h"
+#include "synth/ray_caster.h"
+#include "synth/scanners/render_address.h"
+
+namespace scan::synth {
+
+// Scanner frame = left camera. The scene is lit by ambient light from all sides without shadow plus,
+// with projector_dots > 0, a projector midway between the cameras that casts shadows.
+struct StereoPair {
+  StereoCalibration calibration;
+  double ambient_electrons = 3000;    // of a white pixel under ambient light
+  double projector_electrons = 0;     // more, of a white pixel facing the projector at focus_m in a dot
+  int projector_dots = 0;             // random dots across the projector's width
+  double focus_m = 1;                 // distance at which projector_electrons hold
+  int sub_rays = 3;                   // per pixel side
+  Sensor sensor = {.gain_e_per_dn = 40, .read_noise_e = 10, .bits = 8};
+};
+
+void check(const StereoPair& scanner);
+RawFrames render(const StereoPair& scanner, const RayCaster& caster, const Pose& world_from_scanner,
+                 const RenderAddress& address, const DetectorEffects& effects);
+std::vector<RayTruth> true_rays(const StereoPair& scanner, const RayCaster& caster,
+                                const Pose& world_from_scanner);
+
+}  // namespace scan::synth

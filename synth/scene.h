@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// What stands before the scanner: shapes and meshes with their materials, and light.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "libscan/core/mesh.h"
+#include "libscan/core/shape.h"
+#include "libscan/verify/truth.h"
+
+namespace scan::synth {
+
+// Solid textures: a factor on the albedo at a point of the object, in the object's frame.
+struct PlainTexture {};
+struct CheckerTexture {
+  double period_m = 0.01;
+  double contrast = 0.5;  // albedo times 1 or 1 - contrast
+};
+// Sum of octaves of value noise; its finest wavelength is period_m / 2^(octaves - 1).
+struct NoiseTexture {
+  double period_m = 0.01;
+  int octaves = 4;
+  double contrast = 0.8;
+};
+using Texture = std::variant<PlainTexture, CheckerTexture, NoiseTexture>;
+
+// Lambert: radiance = albedo / pi * irradiance.
+struct Material {
+  std::string name;
+  double albedo = 0.5;
+  Texture texture;
+};
+
+struct Object {
+  std::string name;
+  Pose world_from_object = Pose::Identity();
+  std::variant<Shape, Mesh> geometry;  // object frame, metres
+  int material = 0;                    // index into Scene::materials
+};
+
+struct Scene {
+  std::vector<Object> objects;
+  std::vector<Material> materials;
+};
+
+// Throws scan::Error (input) naming object and field.
+void check(const Scene& scene);
+
+TrueSurface true_surface(const Scene& scene);  // in the world frame
+
+// Albedo at a point of an object (world frame), 0 to 1.
+double albedo_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world);
+
+// Our own models, metres: a bracket with a bore, a fillet and a thin wall (about 80 mm), and an organic
+// form of blended spheres and a ring (about 100 mm). `catalogue_shape` finds them by the words
+// "bracket" and "bud"; none for another word.
+Shape bracket();
+Shape bud();
+
+}  // namespace scan::synth

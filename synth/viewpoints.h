@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Where the scanner stands.
+#pragma once
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "libscan/core/pose.h"
+
+namespace scan::synth {
+
+// Positions around the world's z axis, looking at `centre_m`; x of the scanner is horizontal.
+struct Turntable {  // full turn at one height: equal angles
+  int count = 12;
+  double radius_m = 0.4;
+  double height_m = 0;
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+};
+struct Ring {  // an arc of a turn
+  int count = 8;
+  double radius_m = 0.4;
+  double height_m = 0;
+  double start_rad = 0;
+  double sweep_rad = 6.283185307179586;
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+};
+struct Dome {  // Fibonacci points on the upper part of a sphere, down to `lowest_rad` of elevation
+  int count = 16;
+  double radius_m = 0.4;
+  double lowest_rad = 0;
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+};
+struct PoseList {
+  std::vector<Pose> world_from_scanner;
+};
+using Layout = std::variant<Turntable, Ring, Dome, PoseList>;
+
+// Error of the guesses that estimators get: rotation about a random axis, translation in a random
+// direction; normal, these are the standard deviations of angle and distance. The first scan's guess is
+// exact: its frame is the world.
+struct PoseNoise {
+  double rotation_rad = 0;
+  double translation_m = 0;
+};
+
+struct Viewpoints {
+  Layout layout;
+  PoseNoise pose_noise;
+};
+
+void check(const Viewpoints& viewpoints);
+std::vector<Pose> true_poses(const Viewpoints& viewpoints);  // world_from_scanner
+std::vector<Pose> guessed_poses(const Viewpoints& viewpoints, std::uint64_t seed);
+
+}  // namespace scan::synth
