@@ -15,6 +15,7 @@ struct Hit {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;  // geometric, unit, outward of the object
   int object = -1;
+  std::uint32_t triangle = 0;  // of a mesh
 };
 
 // Built once per scene, used from many threads. Embree runs in ROBUST mode on floats relative to the
