@@ -87,19 +87,8 @@ std::string measurement_table(const ordered_json& verdict) {
   return html + "</table>";
 }
 
-// Wide enough for 99 % of the vertices.
-double colour_limit_m(const std::vector<double>& deviations_m) {
-  std::vector<double> sizes;
-  for (const double d : deviations_m)
-    if (std::isfinite(d)) sizes.push_back(std::abs(d));
-  if (sizes.empty()) return 1;
-  const auto place = sizes.begin() + static_cast<long>(0.99 * static_cast<double>(sizes.size() - 1));
-  std::nth_element(sizes.begin(), place, sizes.end());
-  return std::max(*place, 1e-12);
-}
-
 std::string deviation_section(const Report& report) {
-  const double limit_m = colour_limit_m(report.deviations_m);
+  const double limit_m = deviation_limit_m(report.deviations_m);
   std::string html =
       "<h2>Deviation from the truth</h2><p>Signed distance of each surface vertex: blue lies inside "
       "the true surface, red outside. The scale holds 99 % of the vertices.</p>" +

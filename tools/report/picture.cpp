@@ -104,6 +104,15 @@ std::vector<View> six_views(const Mesh& mesh, const std::vector<double>& values,
   return views;
 }
 
+double deviation_limit_m(std::vector<double> sizes) {
+  std::erase_if(sizes, [](double d) { return !std::isfinite(d); });
+  if (sizes.empty()) return 1;
+  for (double& size : sizes) size = std::abs(size);
+  const auto place = sizes.begin() + static_cast<long>(0.99 * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), place, sizes.end());
+  return std::max(*place, 1e-12);
+}
+
 Image<Colour> contact_sheet(const std::vector<View>& views) {
   constexpr int per_row = 3;
   const int size = views.front().image.width;

@@ -22,6 +22,9 @@ struct View {
 std::vector<View> six_views(const Mesh& mesh, const std::vector<double>& values, double limit,
                             int size_px);
 
+// The scale that holds 99 % of the finite deviations; 1 m for none.
+double deviation_limit_m(std::vector<double> deviations_m);
+
 // The views side by side, three in a row.
 Image<Colour> contact_sheet(const std::vector<View>& views);
 
