@@ -29,7 +29,9 @@ BruteForce::~BruteForce() = default;
 BruteForce::BruteForce(BruteForce&&) noexcept = default;
 BruteForce& BruteForce::operator=(BruteForce&&) noexcept = default;
 
-std::size_t BruteForce::size() const { return tree_->points.size(); }
+std::size_t BruteForce::size() const {
+  return tree_->points.size();
+}
 
 std::optional<Neighbour> BruteForce::nearest(const Eigen::Vector3d& query,
                                              double max_distance_m) const {

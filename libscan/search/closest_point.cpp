@@ -48,9 +48,9 @@ std::optional<Eigen::Vector3d> foot_inside(const Eigen::Vector3d& x, const Eigen
 }  // namespace
 
 // Inside, the foot of the perpendicular is nearest; else the nearest point is on an edge. The
-// barycentric numbers lose 2 log10(longest edge / height) of their 16 digits, so for a thin triangle
-// the edges, which lose none, are asked too: both answers are points of the triangle, and the
-// nearer one is the better.
+// barycentric numbers lose 2 log10(longest edge / height) of their 16 digits, so for a thin
+// triangle the edges, which lose none, are asked too: both answers are points of the triangle, and
+// the nearer one is the better.
 Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
                                           const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   constexpr double thin = 1e-3;  // height over longest edge

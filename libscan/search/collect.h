@@ -15,7 +15,9 @@ namespace scan {
 
 // The inclusive bound on the squared distance; negative, so that nothing is in, for a radius that
 // is negative or not a number.
-inline double squared_limit_m2(double radius_m) { return radius_m >= 0 ? radius_m * radius_m : -1; }
+inline double squared_limit_m2(double radius_m) {
+  return radius_m >= 0 ? radius_m * radius_m : -1;
+}
 
 class NearestCollector {
  public:

@@ -71,7 +71,9 @@ FlannIndex::~FlannIndex() = default;
 FlannIndex::FlannIndex(FlannIndex&&) noexcept = default;
 FlannIndex& FlannIndex::operator=(FlannIndex&&) noexcept = default;
 
-std::size_t FlannIndex::size() const { return tree_->points.size(); }
+std::size_t FlannIndex::size() const {
+  return tree_->points.size();
+}
 
 std::optional<Neighbour> FlannIndex::nearest(const Eigen::Vector3d& query,
                                              double max_distance_m) const {

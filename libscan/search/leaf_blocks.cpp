@@ -28,8 +28,9 @@ void LeafBlocks::append(std::span<const LocalPoint> points,
   const std::size_t first = size();
   resize(first + (points.size() + width - 1) / width);
   for (std::size_t block = first; block < size(); ++block)
-    fill(block, points.subspan((block - first) * width).first(
-                    std::min<std::size_t>(width, points.size() - (block - first) * width)),
+    fill(block,
+         points.subspan((block - first) * width)
+             .first(std::min<std::size_t>(width, points.size() - (block - first) * width)),
          points_m);
 }
 

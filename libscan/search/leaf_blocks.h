@@ -41,7 +41,8 @@ class LeafBlocks {
  public:
   static constexpr std::uint32_t width = 8;
 
-  // Blocks for the points in their order; the last one is filled up with NaN, which no bound admits.
+  // Blocks for the points in their order; the last one is filled up with NaN, which no bound
+  // admits.
   void append(std::span<const LocalPoint> points, std::span<const Eigen::Vector3d> points_m);
   void resize(std::size_t blocks);
   void fill(std::size_t block, std::span<const LocalPoint> points,

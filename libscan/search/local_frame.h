@@ -21,8 +21,8 @@ struct LocalPoint {
 };
 
 // Local coordinates u = (x - origin) * units_per_m; units_per_m is a power of two, so scaling is
-// exact, and the points of the cloud have |u| < 1 on each axis: neither their offset nor their scale
-// costs a bit.
+// exact, and the points of the cloud have |u| < 1 on each axis: neither their offset nor their
+// scale costs a bit.
 struct LocalFrame {
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
   double units_per_m = 1;
@@ -41,9 +41,9 @@ std::vector<LocalPoint> local_points(std::span<const Eigen::Vector3d> points_m,
 //
 // Let d be the true distance to a point in local units. Rounding both to float moves each by at
 // most 2^-24 of its largest coordinate on each axis, the query's being |q|: the distance d' of the
-// rounded ones obeys |d' - d| <= sqrt(3) 2^-24 (1 + |q|) < 2^-23 (1 + |q|) =: slack. The float value
-// of d'^2, of a sum of three squares of differences, is d'^2 (1 + t), |t| <= 6 * 2^-24. So a point
-// with d <= L has a float value of at most (L + slack)^2 (1 + 2^-20), rounding of this bound
+// rounded ones obeys |d' - d| <= sqrt(3) 2^-24 (1 + |q|) < 2^-23 (1 + |q|) =: slack. The float
+// value of d'^2, of a sum of three squares of differences, is d'^2 (1 + t), |t| <= 6 * 2^-24. So a
+// point with d <= L has a float value of at most (L + slack)^2 (1 + 2^-20), rounding of this bound
 // and of the double values included. The same holds for the distance to a box of rounded points.
 struct LocalQuery {
   LocalQuery(const LocalFrame& frame, const Eigen::Vector3d& query_m);

@@ -40,8 +40,7 @@ struct Box {
   float distance2(const std::array<float, 3>& from) const {
     float sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const float gap =
-          std::max(std::max(low[axis] - from[axis], from[axis] - high[axis]), 0.0f);
+      const float gap = std::max(std::max(low[axis] - from[axis], from[axis] - high[axis]), 0.0f);
       sum += gap * gap;
     }
     return sum;
@@ -70,8 +69,8 @@ std::array<Points, 8> split(Points points, const Cube& cube) {
 }  // namespace
 
 // Each node knows the smallest box of its points. Cubes that hold all points of their parent are
-// passed over, so the depth follows the points; a leaf holds up to `leaf_size` points, or any number
-// of equal ones.
+// passed over, so the depth follows the points; a leaf holds up to `leaf_size` points, or any
+// number of equal ones.
 struct Octree::Tree {
   static constexpr std::size_t leaf_size = 16;
   struct Node {
@@ -153,7 +152,9 @@ Octree::~Octree() = default;
 Octree::Octree(Octree&&) noexcept = default;
 Octree& Octree::operator=(Octree&&) noexcept = default;
 
-std::size_t Octree::size() const { return tree_->points; }
+std::size_t Octree::size() const {
+  return tree_->points;
+}
 
 std::optional<Neighbour> Octree::nearest(const Eigen::Vector3d& query,
                                          double max_distance_m) const {

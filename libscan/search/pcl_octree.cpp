@@ -19,11 +19,13 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Search = pcl::octree::OctreePointCloudSearch<pcl::PointXYZ>;
 
-constexpr double cube_half = 2;      // in local units; PCL's upper faces do not belong to its cube
-constexpr double finest = 0x1p-18;   // side of the smallest voxels
-constexpr std::size_t bucket = 16;   // points beyond which a voxel is divided
+constexpr double cube_half = 2;     // in local units; PCL's upper faces do not belong to its cube
+constexpr double finest = 0x1p-18;  // side of the smallest voxels
+constexpr std::size_t bucket = 16;  // points beyond which a voxel is divided
 
-pcl::PointXYZ pcl_point(const std::array<float, 3>& at) { return {at[0], at[1], at[2]}; }
+pcl::PointXYZ pcl_point(const std::array<float, 3>& at) {
+  return {at[0], at[1], at[2]};
+}
 
 }  // namespace
 
@@ -40,10 +42,11 @@ struct PclOctree::Tree {
   }
 
   // PCL compares squared float distances, to points and to voxel centres, with a bound computed in
-  // double. A voxel's centre is a multiple of half a voxel's side, |centre| < 2, so rounded to float
-  // it is off by 2^-24 at most on an axis, as a point is; the distance by slack (local_frame.h),
-  // and by 3 * 2^-24 of itself. As a distance that matters is below 2 sqrt(3) (2 + |q|), twice
-  // 2^-20 (2 + |q|) = 16 * slack, at least, covers the sum; from |q| = 2^14 on, all are candidates.
+  // double. A voxel's centre is a multiple of half a voxel's side, |centre| < 2, so rounded to
+  // float it is off by 2^-24 at most on an axis, as a point is; the distance by slack
+  // (local_frame.h), and by 3 * 2^-24 of itself. As a distance that matters is below 2 sqrt(3) (2 +
+  // |q|), twice 2^-20 (2 + |q|) = 16 * slack, at least, covers the sum; from |q| = 2^14 on, all are
+  // candidates.
   template <class Collector>
   void visit(const Eigen::Vector3d& query_m, double radius_m, Collector& collector) const {
     const LocalQuery query(frame, query_m);
@@ -95,7 +98,9 @@ PclOctree::~PclOctree() = default;
 PclOctree::PclOctree(PclOctree&&) noexcept = default;
 PclOctree& PclOctree::operator=(PclOctree&&) noexcept = default;
 
-std::size_t PclOctree::size() const { return tree_->points_m.size(); }
+std::size_t PclOctree::size() const {
+  return tree_->points_m.size();
+}
 
 std::optional<Neighbour> PclOctree::nearest(const Eigen::Vector3d& query,
                                             double max_distance_m) const {

@@ -32,11 +32,16 @@ std::optional<SearchMethod> search_method_from(std::string_view name) {
 
 AnySearch make_search(SearchMethod method, std::span<const Eigen::Vector3d> points) {
   switch (method) {
-    case SearchMethod::kd_tree: return KdTree(points);
-    case SearchMethod::octree: return Octree(points);
-    case SearchMethod::brute_force: return BruteForce(points);
-    case SearchMethod::flann: return FlannIndex(points);
-    case SearchMethod::pcl_octree: return PclOctree(points);
+    case SearchMethod::kd_tree:
+      return KdTree(points);
+    case SearchMethod::octree:
+      return Octree(points);
+    case SearchMethod::brute_force:
+      return BruteForce(points);
+    case SearchMethod::flann:
+      return FlannIndex(points);
+    case SearchMethod::pcl_octree:
+      return PclOctree(points);
   }
   return KdTree(points);  // not reached: the list above is complete
 }
