@@ -38,6 +38,17 @@ concept NeighbourSearch =
       { search.within(query, distance_m, found) } -> std::same_as<void>;
     };
 
+// The order of answers: by distance, then by index.
+inline bool nearer(const Neighbour& a, const Neighbour& b) {
+  return a.distance2_m2 < b.distance2_m2 || (a.distance2_m2 == b.distance2_m2 && a.index < b.index);
+}
+
+// The squared distance by which all models decide; one order of operations, so the same bits.
+inline double squared_distance_m2(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const double x = a.x() - b.x(), y = a.y() - b.y(), z = a.z() - b.z();
+  return x * x + y * y + z * z;
+}
+
 inline constexpr double unlimited_m = std::numeric_limits<double>::infinity();
 
 }  // namespace scan
