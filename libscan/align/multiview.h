@@ -20,6 +20,9 @@ struct MultiviewOptions {
   int anchor = 0;             // the scan whose pose is kept
 };
 
+// Throws scan::Error (usage) naming the option and its limit.
+void check(const MultiviewOptions& options);
+
 struct ScanPose {
   Pose world_from_scan = Pose::Identity();
   Stop stop = Stop::too_few_points;
