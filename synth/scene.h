@@ -3,7 +3,9 @@
 // What stands before the scanner: shapes and meshes with their materials, and light.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -59,5 +61,6 @@ double albedo_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_wor
 // "bracket" and "bud"; none for another word.
 Shape bracket();
 Shape bud();
+std::optional<Shape> catalogue_shape(std::string_view word);
 
 }  // namespace scan::synth
