@@ -7,12 +7,12 @@ namespace scan::synth {
 std::optional<SeenSurface> first_surface(const RayCaster& caster, const Pose& world_from_scanner,
                                          const ScannerRay& ray) {
   const Eigen::Vector3d direction_in_world = world_from_scanner.linear() * ray.direction;
-  std::optional<Hit> hit = caster.closest(world_from_scanner * ray.origin, direction_in_world);
-  if (!hit) return std::nullopt;
-  if (hit->normal.dot(direction_in_world) > 0) hit->normal = -hit->normal;
-  return SeenSurface{.point = ray.origin + hit->distance_m * ray.direction,
-                     .normal = world_from_scanner.linear().transpose() * hit->normal,
-                     .hit = *hit};
+  const auto found = caster.closest(world_from_scanner * ray.origin, direction_in_world);
+  if (!found) return std::nullopt;
+  const Hit hit = facing(*found, direction_in_world);
+  return SeenSurface{.point = ray.origin + hit.distance_m * ray.direction,
+                     .normal = world_from_scanner.linear().transpose() * hit.normal,
+                     .hit = hit};
 }
 
 RayTruth true_ray(const RayCaster& caster, const Pose& world_from_scanner, const ScannerRay& ray) {

@@ -90,7 +90,7 @@ RawFrames render(const PhaseCamera& s, const RayCaster& caster, const Pose& worl
   const int width = s.camera.width_px, height = s.camera.height_px;
   PhaseTaps frames{.calibration = {.camera = s.camera,
                                    .frequencies_hz = s.frequencies_hz,
-                                   .sensor = s.sensor,
+                                   .sensor = delivered_sensor(s.sensor, effects),
                                    .max_range_m = s.max_range_m},
                    .taps = {}};
   const Image<std::uint16_t> blank(width, height);

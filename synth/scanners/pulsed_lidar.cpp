@@ -15,6 +15,9 @@ namespace {
 
 constexpr double reference_range_m = 10;  // of electrons_at_10m
 constexpr double window_margin_sigmas = 4;
+// A surface at the lens would send back more than any sensor holds; this many still count as
+// Poisson.
+constexpr double most_electrons = 1e15;
 constexpr double pulse_reach_sigmas = 9;  // a share of 2e-19 of the pulse lies beyond
 
 struct Echo {
@@ -85,8 +88,10 @@ std::optional<Echo> echo_of(const PulsedLidar& s, const RayCaster& caster,
   const double albedo = albedo_at(caster.scene(), seen->hit.object, seen->hit.point);
   const double cosine = std::abs(seen->normal.dot(ray.direction));
   const double falloff = reference_range_m * reference_range_m / (range_m * range_m);
-  return Echo{.time_s = 2 * range_m / speed_of_light_m_s,
-              .electrons = s.electrons_at_10m * albedo * cosine * falloff * ray.share};
+  return Echo{
+      .time_s = 2 * range_m / speed_of_light_m_s,
+      .electrons =
+          std::min(most_electrons, s.electrons_at_10m * albedo * cosine * falloff) * ray.share};
 }
 
 // Adds the echo's Gaussian, integrated over each sample's interval.
@@ -185,7 +190,7 @@ RawFrames render(const PulsedLidar& s, const RayCaster& caster, const Pose& worl
   Waveforms frames{.calibration = {.sample_interval_s = s.sample_interval_s,
                                    .window_start_s = window_start_s(s),
                                    .pulse_sigma_s = s.pulse_sigma_s,
-                                   .sensor = s.sensor},
+                                   .sensor = delivered_sensor(s.sensor, effects)},
                    .grid = grid_of(s),
                    .directions = ray_directions(s),
                    .samples_per_ray = static_cast<std::uint32_t>(samples_in_window(s)),

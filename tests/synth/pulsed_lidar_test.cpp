@@ -318,7 +318,7 @@ TEST(PulsedLidar, NamesTheFieldThatIsWrong) {
   EXPECT_EQ(with([](auto& l) { l.max_range_m = 0.1; }),
             "pulsed_lidar/max_range_m: 0.1, must be from 0.5 to 1e+09");
   EXPECT_EQ(with([](auto& l) { l.pattern = RasterPattern{.rows = 0}; }),
-            "pulsed_lidar/pattern.rows: 0, must be from 1 to 1e+06");
+            "pulsed_lidar/pattern.rows: 0, must be from 1 to 1000000");
   EXPECT_EQ(
       with([](auto& l) { l.pattern = SpinningPattern{.lowest_rad = 0.2, .highest_rad = 0.1}; }),
       "pulsed_lidar/pattern.highest_rad: 0.1, must be from 0.2 to 1.57079633");
