@@ -54,7 +54,8 @@ double mean_of(const Image<double>& image) {
 }
 
 // A left pixel's rays and those of the right pixel d further left end on the same places of a plane
-// at Z = f B / (d + doffs), up to rounding (1e-15 m); the texture's slope is below 3000 e / 1e-3 m.
+// at Z = f B / (d + doffs), up to rounding (1e-15 m); the texture's slope is below 3000 e / 1e-3 m,
+// that of the dots below 2 * 3000 e / 8e-3 m.
 void expect_shifted_copies(const StereoPair& pair, double z_m, int disparity_px) {
   const Scene scene{.objects = {plane_at(z_m)}, .materials = {noisy(0.05, 4)}};
   const Image<double> left = mean_image(pair, scene, StereoSide::left);
@@ -70,6 +71,16 @@ void expect_shifted_copies(const StereoPair& pair, double z_m, int disparity_px)
 
 TEST(StereoPair, SeesAFacingPlaneShiftedByItsDisparity) {
   expect_shifted_copies(small_pair(), depth_of(8), 8);
+}
+
+// The dots lie on the surface, not in the images.
+TEST(StereoPair, SeesTheProjectedDotsFromBothCameras) {
+  StereoPair pair = small_pair();
+  pair.projector_electrons = 3000;
+  pair.projector_dots = 32;
+  expect_shifted_copies(pair, depth_of(8), 8);
+  pair.ambient_electrons = 0;
+  expect_shifted_copies(pair, depth_of(8), 8);
 }
 
 TEST(StereoPair, CountsDisparityWithoutTheOffsetOfTheRightPrincipalPoint) {
@@ -219,7 +230,7 @@ TEST(StereoPair, CastsTheProjectorsShadow) {
   double brightest_outside = 0;
   for (int row = 0; row < left.height; ++row) {
     for (int column = 29; column < 35; ++column) EXPECT_DOUBLE_EQ(left(column, row), 1500);
-    for (int column = 10; column < 28; ++column)
+    for (int column = 23; column < 28; ++column)  // dark if the projector were in the right camera
       brightest_outside = std::max(brightest_outside, left(column, row));
   }
   EXPECT_GT(brightest_outside, 1800);
