@@ -138,6 +138,16 @@ Recipe read_recipe(const std::filesystem::path& path) {
   return recipe;
 }
 
+std::vector<Limit> read_limits(const std::filesystem::path& path) {
+  const nlohmann::json json = read_json(path);
+  if (!json.is_array())
+    throw Error(Trouble::input, path.string() + ": must be a list of limits [ {...}, ... ]");
+  std::vector<Limit> limits;
+  for (std::size_t i = 0; i < json.size(); ++i)
+    limits.push_back(read_limit(JsonReader(json[i], path.string() + "/" + std::to_string(i))));
+  return limits;
+}
+
 ordered_json to_json(const Recipe& recipe) {
   ordered_json limits = ordered_json::array();
   for (const Limit& limit : recipe.limits)

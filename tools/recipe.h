@@ -55,6 +55,9 @@ struct Recipe {
 // scan::Error (input) names file, key, value and limit; meshes are read relative to the recipe.
 Recipe read_recipe(const std::filesystem::path& path);
 
+// A JSON list of limits, as a recipe has them.
+std::vector<Limit> read_limits(const std::filesystem::path& path);
+
 // With all defaults filled in, SI units; reading it back gives the same recipe. Meshes are named by
 // their absolute path.
 nlohmann::ordered_json to_json(const Recipe& recipe);

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
-#include "libscan/io/json_output.h"
-#include "libscan/io/json_reader.h"
+#include "tools/json_output.h"
+#include "libscan/io/atomic_file.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/truth_file.h"
@@ -111,18 +111,22 @@ std::string report_run(const std::filesystem::path& run) {
   return report_page(report);
 }
 
-void say_verdict(const Verdict& verdict, const Console& console) {
-  for (const Measurement& m : verdict.measurements) {
+void say_verdict(const ordered_json& verdict, const Console& console) {
+  const auto readable = [](const ordered_json& value, const std::string& unit) {
+    return value.is_number() ? readable_value(value.get<double>(), unit) : "unknown";
+  };
+  for (const auto& m : verdict.at("measurements")) {
+    const std::string unit = m.at("unit");
     char line[256];
-    std::snprintf(line, sizeof line, "  %-28s %12s", m.name.c_str(),
-                  readable_value(m.value, m.unit).c_str());
+    std::snprintf(line, sizeof line, "  %-28s %12s", m.at("name").get<std::string>().c_str(),
+                  readable(m.at("value"), unit).c_str());
     std::string text = line;
-    if (m.limit)
-      text += "   " + std::string(m.pass ? "pass" : "FAIL") + " (" + m.relation + " " +
-              readable_value(*m.limit, m.unit) + ")";
+    if (!m.at("relation").get<std::string>().empty())
+      text += std::string("   ") + (m.at("pass").get<bool>() ? "pass" : "FAIL") + " (" +
+              m.at("relation").get<std::string>() + " " + readable(m.at("limit"), unit) + ")";
     console.say(text);
   }
-  console.say(verdict.pass ? "PASS" : "FAIL");
+  console.say(verdict.at("pass").get<bool>() ? "PASS" : "FAIL");
 }
 
 }  // namespace scan

@@ -6,7 +6,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/io/image_file.h"
-#include "libscan/io/json_output.h"
+#include "tools/json_output.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/truth_file.h"
@@ -120,8 +120,9 @@ int verify(const Arguments& arguments, Console& console) {
     verdict = judge(measure_files(arguments), limits);
   }
   console.time("verify", watch.seconds());
-  say_verdict(verdict, console);
-  console.finish("verify", verdict.pass ? "ok" : "failed", verdict_json(verdict));
+  const auto json = verdict_json(verdict);
+  say_verdict(json, console);
+  console.finish("verify", verdict.pass ? "ok" : "failed", json);
   return verdict.pass ? 0 : 1;
 }
 
