@@ -53,14 +53,10 @@ class LeafBlocks {
   template <class Collector>
   void scan(std::size_t block, Screen<Collector>& screen) const {
     const Coordinates& of = coordinates_[block];
-    const auto [x, y, z] = screen.at();
+    const auto& [x, y, z] = screen.at();
     const float limit2 = screen.limit2();
-    alignas(16) float distance2[width];
+    const Eight distance2 = (of.x - x).square() + (of.y - y).square() + (of.z - z).square();
     std::uint32_t hits = 0;
-    for (std::uint32_t i = 0; i < width; ++i) {
-      const float dx = of.x[i] - x, dy = of.y[i] - y, dz = of.z[i] - z;
-      distance2[i] = dx * dx + dy * dy + dz * dz;
-    }
     for (std::uint32_t i = 0; i < width; ++i) hits |= distance2[i] <= limit2 ? bit[i] : 0;
     for (; hits != 0; hits &= hits - 1) {
       const int i = std::countr_zero(hits);
@@ -71,9 +67,10 @@ class LeafBlocks {
   }
 
  private:
+  using Eight = Eigen::Array<float, width, 1>;  // Eigen computes four at a time
   static constexpr std::uint32_t bit[width] = {1, 2, 4, 8, 16, 32, 64, 128};
-  struct alignas(32) Coordinates {
-    float x[width], y[width], z[width];
+  struct Coordinates {
+    Eight x, y, z;
   };
   struct alignas(32) Exact {
     Eigen::Vector3d point_m;

@@ -37,14 +37,6 @@ struct Box {
         high[axis] = std::max(high[axis], point.at[axis]);
       }
   }
-  float distance2(const std::array<float, 3>& from) const {
-    float sum = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float gap = std::max(std::max(low[axis] - from[axis], from[axis] - high[axis]), 0.0f);
-      sum += gap * gap;
-    }
-    return sum;
-  }
 };
 
 // Sorts the points by octant of the cube; returns the eight parts.
@@ -68,32 +60,57 @@ std::array<Points, 8> split(Points points, const Cube& cube) {
 
 }  // namespace
 
-// Each node knows the smallest box of its points. Cubes that hold all points of their parent are
-// passed over, so the depth follows the points; a leaf holds up to `leaf_size` points, or any
-// number of equal ones.
+// Each node knows the smallest boxes of its children's points. Cubes that hold all points of their
+// parent are passed over, so the depth follows the points; a leaf holds up to `leaf_size` points, or
+// any number of equal ones.
 struct Octree::Tree {
-  static constexpr std::size_t leaf_size = 16;
-  struct Node {
-    Box box;
-    std::uint32_t first = 0;       // child node, or block of a leaf
-    std::uint32_t count : 31 = 0;  // of children, or of blocks
-    std::uint32_t is_leaf : 1 = 0;
+  static constexpr std::size_t leaf_size = 32;
+  static constexpr int width = 8;
+
+  struct Child {
+    std::uint32_t first = 0;   // the node, or the first block of a leaf
+    std::uint32_t blocks = 0;  // of a leaf; 0: a node
   };
+  using Eight = Eigen::Array<float, width, 1>;
+  struct Node {
+    std::array<Eight, 3> low, high;  // boxes of the children
+    std::array<Child, width> children;
+    std::uint32_t count = 0;
+
+    Node() {
+      low.fill(Eight::Zero());
+      high.fill(Eight::Zero());
+    }
+    void add(const Box& box, Child child) {
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis][count] = box.low[axis];
+        high[axis][count] = box.high[axis];
+      }
+      children[count++] = child;
+    }
+    // Squared distances to the boxes; those beyond `count` mean nothing.
+    Eight distances2(const std::array<float, 3>& at) const {
+      Eight sum = Eight::Zero();
+      for (int axis = 0; axis < 3; ++axis)
+        sum += (low[axis] - at[axis]).max(at[axis] - high[axis]).max(0.0f).square();
+      return sum;
+    }
+  };
+
   LocalFrame frame;
   std::size_t points = 0;
   std::vector<Node> nodes;
   LeafBlocks blocks;
+  Child root;
 
-  void build_leaf(std::size_t self, Points part, std::span<const Eigen::Vector3d> points_m) {
-    nodes[self].first = static_cast<std::uint32_t>(blocks.size());
+  Child build_leaf(Points part, std::span<const Eigen::Vector3d> points_m) {
+    const std::size_t first = blocks.size();
     blocks.append(part, points_m);
-    nodes[self].count = static_cast<std::uint32_t>(blocks.size()) - nodes[self].first;
-    nodes[self].is_leaf = 1;
+    return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(blocks.size() - first)};
   }
 
-  void build(std::size_t self, Points part, Cube cube, std::span<const Eigen::Vector3d> points_m) {
-    const Box box = nodes[self].box;
-    if (part.size() <= leaf_size || box.low == box.high) return build_leaf(self, part, points_m);
+  Child build(Points part, const Box& box, Cube cube, std::span<const Eigen::Vector3d> points_m) {
+    if (part.size() <= leaf_size || box.low == box.high) return build_leaf(part, points_m);
     std::array<Points, 8> parts = split(part, cube);
     const auto holds_all = [&](const Points& p) { return p.size() == part.size(); };
     for (auto all = std::find_if(parts.begin(), parts.end(), holds_all); all != parts.end();
@@ -101,41 +118,41 @@ struct Octree::Tree {
       cube = cube.octant(static_cast<unsigned>(all - parts.begin()));
       parts = split(part, cube);
     }
-    const std::size_t first = nodes.size();
-    for (const Points& child : parts)
-      if (!child.empty()) nodes.push_back({Box(child)});
-    nodes[self].first = static_cast<std::uint32_t>(first);
-    nodes[self].count = static_cast<std::uint32_t>(nodes.size() - first);
-    std::size_t next = first;
-    for (unsigned o = 0; o < 8; ++o)
-      if (!parts[o].empty()) build(next++, parts[o], cube.octant(o), points_m);
+    const std::size_t self = nodes.size();
+    nodes.emplace_back();
+    for (unsigned o = 0; o < 8; ++o) {
+      if (parts[o].empty()) continue;
+      const Box child_box(parts[o]);
+      const Child child = build(parts[o], child_box, cube.octant(o), points_m);
+      nodes[self].add(child_box, child);
+    }
+    return {static_cast<std::uint32_t>(self), 0};
   }
 
   template <class Collector>
-  void search(const Node& node, Screen<Collector>& screen) const {
-    if (node.is_leaf != 0) {
-      for (std::uint32_t i = 0; i < node.count; ++i) blocks.scan(node.first + i, screen);
-      return;
-    }
-    std::array<std::pair<float, std::uint32_t>, 8> children;  // nearest first
+  void search(const Child& child, Screen<Collector>& screen) const {
+    for (std::uint32_t i = 0; i < child.blocks; ++i) blocks.scan(child.first + i, screen);
+    if (child.blocks > 0) return;
+    const Node& node = nodes[child.first];
+    const Eight distance2 = node.distances2(screen.at());
+    std::array<std::uint32_t, width> order;  // of the children near enough, nearest first
     std::size_t count = 0;
     for (std::uint32_t i = 0; i < node.count; ++i) {
-      const float distance2 = nodes[node.first + i].box.distance2(screen.at());
-      if (!(distance2 <= screen.limit2())) continue;
+      if (!(distance2[i] <= screen.limit2())) continue;
       std::size_t place = count++;
-      for (; place > 0 && distance2 < children[place - 1].first; --place)
-        children[place] = children[place - 1];
-      children[place] = {distance2, node.first + i};
+      for (; place > 0 && distance2[i] < distance2[order[place - 1]]; --place)
+        order[place] = order[place - 1];
+      order[place] = i;
     }
-    for (std::size_t i = 0; i < count && children[i].first <= screen.limit2(); ++i)
-      search(nodes[children[i].second], screen);
+    for (std::size_t i = 0; i < count && distance2[order[i]] <= screen.limit2(); ++i)
+      search(node.children[order[i]], screen);
   }
 
   template <class Collector>
   void visit(const Eigen::Vector3d& query, Collector& collector) const {
-    if (nodes.empty()) return;
+    if (points == 0) return;
     Screen<Collector> screen(frame, query, collector);
-    search(nodes.front(), screen);
+    search(root, screen);
   }
 };
 
@@ -144,8 +161,7 @@ Octree::Octree(std::span<const Eigen::Vector3d> points) : tree_(std::make_unique
   std::vector<LocalPoint> local = local_points(points, tree_->frame);
   tree_->points = local.size();
   if (local.empty()) return;
-  tree_->nodes.push_back({Box(local)});
-  tree_->build(0, local, {}, points);
+  tree_->root = tree_->build(local, Box(local), {}, points);
 }
 
 Octree::~Octree() = default;
