@@ -144,7 +144,7 @@ void check(const PulsedLidar& s) {
   require_within("pulsed_lidar/divergence_rad", s.divergence_rad, 0, 1);
   require_within("pulsed_lidar/exit_radius_m", s.exit_radius_m, 0, 1);
   require_within("pulsed_lidar/sub_rays", s.sub_rays, 1, 64);
-  require_sensor("pulsed_lidar", s.sensor, 16);
+  check(s.sensor);
   require_within("pulsed_lidar/min_range_m", s.min_range_m, 0, 1e9);
   require_within("pulsed_lidar/max_range_m", s.max_range_m, s.min_range_m, 1e9);
   require_size("pulsed_lidar/rows * columns * samples",
