@@ -97,6 +97,9 @@ TEST(PulsedLidar, WidensThePulseByItsInterval) {
   lidar.ambient_electrons = 0;
   const Moments m = moments_of(lidar, waveform(lidar, scene_of(plane_at(8), 1)));
   EXPECT_NEAR(m.variance_s2, 1.5e-9 * 1.5e-9 + 1e-18 / 12, 1e-27);
+  const auto frames =
+      std::get<Waveforms>(render(lidar, RayCaster(Scene{}), Pose::Identity(), {}, noise_free));
+  EXPECT_NEAR(frames.calibration.pulse_sigma_s, std::sqrt(m.variance_s2), 1e-18);
 }
 
 TEST(PulsedLidar, OpensItsWindowFourSigmasBeyondTheRangeLimits) {
