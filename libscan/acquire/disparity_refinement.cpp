@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/acquire/disparity_refinement.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "libscan/core/parallel.h"
+
+namespace scan::decoding {
+namespace {
+
+constexpr double same_surface_px = 1;  // disparity step that ends a surface
+constexpr double farthest_move_px = 1;
+
+// Value and derivative at a place within a row; none outside [1, width - 2].
+struct Sample {
+  double value = 0;
+  double slope = 0;
+};
+
+bool sample(const Image<std::uint8_t>& image, double x, int row, Sample& result) {
+  if (!(x >= 1 && x < image.width - 2)) return false;
+  const int i = static_cast<int>(x);
+  const double t = x - i;
+  const double a = image(i - 1, row), b = image(i, row), c = image(i + 1, row), d = image(i + 2, row);
+  const double p1 = c - a, p2 = 2 * a - 5 * b + 4 * c - d, p3 = 3 * (b - c) + d - a;
+  result.value = b + 0.5 * t * (p1 + t * (p2 + t * p3));
+  result.slope = 0.5 * (p1 + t * (2 * p2 + t * 3 * p3));
+  return true;
+}
+
+// One pixel of the window: where it is, and its share of the disparity's slope.
+struct WindowPixel {
+  int column, row;
+  double offset_px;  // disparity here minus disparity at the centre
+};
+
+// Slope of the disparity by least squares over the same surface in a window of twice the reach.
+Eigen::Vector2d slope_at(const Image<float>& disparity, int column, int row, int reach) {
+  Eigen::Matrix2d moments = Eigen::Matrix2d::Identity() * 1e-3;  // no neighbours: no slope
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  const double centre = disparity(column, row);
+  for (int y = std::max(0, row - reach); y <= std::min(disparity.height - 1, row + reach); ++y)
+    for (int x = std::max(0, column - reach); x <= std::min(disparity.width - 1, column + reach); ++x) {
+      const double step = disparity(x, y) - centre;
+      const double distance = std::hypot(x - column, y - row);
+      if (!(std::abs(step) <= same_surface_px * std::max(1.0, 0.5 * distance))) continue;
+      const Eigen::Vector2d offset(x - column, y - row);
+      moments += offset * offset.transpose();
+      right += step * offset;
+    }
+  return moments.ldlt().solve(right);
+}
+
+std::vector<WindowPixel> window_at(const Image<float>& disparity, int column, int row, int half) {
+  const Eigen::Vector2d slope = slope_at(disparity, column, row, 2 * half);
+  std::vector<WindowPixel> window;
+  for (int y = std::max(0, row - half); y <= std::min(disparity.height - 1, row + half); ++y)
+    for (int x = std::max(0, column - half); x <= std::min(disparity.width - 1, column + half); ++x) {
+      const double offset = slope.dot(Eigen::Vector2d(x - column, y - row));
+      const double step = disparity(x, y) - disparity(column, row);
+      if (std::abs(step - offset) <= same_surface_px) window.push_back({x, y, offset});
+    }
+  return window;
+}
+
+// Sums over the window at disparity d, brightness difference eliminated.
+struct Fit {
+  int count = 0;
+  double residual = 0;  // sum of squares
+  double texture = 0;   // sum of squared slopes
+  double gradient = 0;  // sum of residual times slope
+};
+
+Fit fit_at(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+           const std::vector<WindowPixel>& window, double d) {
+  Fit fit;
+  double e = 0, e2 = 0, g = 0, g2 = 0, eg = 0;
+  for (const WindowPixel& pixel : window) {
+    Sample seen;
+    if (!sample(right, pixel.column - d - pixel.offset_px, pixel.row, seen)) continue;
+    const double error = left(pixel.column, pixel.row) - seen.value;
+    ++fit.count;
+    e += error;
+    e2 += error * error;
+    g += seen.slope;
+    g2 += seen.slope * seen.slope;
+    eg += error * seen.slope;
+  }
+  if (fit.count == 0) return fit;
+  fit.residual = std::max(0.0, e2 - e * e / fit.count);
+  fit.texture = std::max(0.0, g2 - g * g / fit.count);
+  fit.gradient = eg - e * g / fit.count;
+  return fit;
+}
+
+struct Refined {
+  double disparity_px;
+  double sigma_px;
+};
+
+Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+                     const std::vector<WindowPixel>& window, double start, double match_sigma_px) {
+  constexpr double rounding_variance = 1.0 / 6;  // two images, 1/12 each
+  Refined best{start, match_sigma_px};
+  Fit fit = fit_at(left, right, window, start);
+  if (fit.count < 6) return best;
+  for (int iteration = 0; iteration < 8 && fit.texture > 0; ++iteration) {
+    // d residual / d disparity = 2 * gradient, so the step is - gradient / texture.
+    const double trial = best.disparity_px - fit.gradient / fit.texture;
+    if (!(std::abs(trial - start) <= farthest_move_px)) break;
+    const Fit next = fit_at(left, right, window, trial);
+    if (next.count < fit.count || !(next.residual < fit.residual)) break;
+    const double move = std::abs(trial - best.disparity_px);
+    best.disparity_px = trial;
+    fit = next;
+    if (move < 1e-4) break;
+  }
+  const double noise2 = std::max(fit.residual / (fit.count - 2), rounding_variance);
+  best.sigma_px = 1 / std::sqrt(fit.texture / noise2 + 1 / (match_sigma_px * match_sigma_px));
+  return best;
+}
+
+}  // namespace
+
+RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+                        const Image<float>& disparity_px, int block_px, double match_sigma_px) {
+  const float unknown = std::numeric_limits<float>::quiet_NaN();
+  RefinedDisparity result{disparity_px, Image<float>(left.width, left.height, unknown)};
+  const int half = std::max(2, block_px / 2);
+  parallel_for(disparity_px.pixels.size(), [&](std::size_t i) {
+    const double start = disparity_px.pixels[i];
+    if (std::isnan(start)) return;
+    const int column = static_cast<int>(i % left.width), row = static_cast<int>(i / left.width);
+    const Refined refined = refine_pixel(
+        left, right, window_at(disparity_px, column, row, half), start, match_sigma_px);
+    result.disparity_px.pixels[i] = static_cast<float>(refined.disparity_px);
+    result.sigma_px.pixels[i] = static_cast<float>(refined.sigma_px);
+  });
+  return result;
+}
+
+}  // namespace scan::decoding

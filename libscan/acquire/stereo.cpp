@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/acquire/stereo.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "libscan/acquire/disparity_refinement.h"
+#include "libscan/acquire/ray_outcome.h"
+#include "libscan/acquire/reason.h"
+#include "libscan/acquire/semi_global.h"
+#include "libscan/core/error.h"
+#include "libscan/core/parallel.h"
+
+namespace scan {
+namespace {
+
+using decoding::missed;
+using decoding::RayOutcome;
+
+void require(bool holds, const char* field, double value, const char* limit) {
+  if (holds) return;
+  throw Error(Trouble::input, std::string("stereo/") + field + ": " + std::to_string(value) +
+                                  ", must be " + limit);
+}
+
+void check(const StereoCalibration& c) {
+  require(c.width_px > 0, "width_px", c.width_px, "positive");
+  require(c.height_px > 0, "height_px", c.height_px, "positive");
+  require(c.focal_px > 0 && std::isfinite(c.focal_px), "focal_px", c.focal_px, "positive");
+  require(c.baseline_m > 0 && std::isfinite(c.baseline_m), "baseline_m", c.baseline_m, "positive");
+  require(std::isfinite(c.cx_px), "cx_px", c.cx_px, "finite");
+  require(std::isfinite(c.cy_px), "cy_px", c.cy_px, "finite");
+  require(std::isfinite(c.doffs_px), "doffs_px", c.doffs_px, "finite");
+}
+
+void check(const ImagePair& pair, const StereoOptions& options) {
+  const StereoCalibration& c = pair.calibration;
+  check(c);
+  // The matcher keeps sixteenths of a pixel in 16 bits.
+  require(c.disparities_px > 0 && c.disparities_px < 2000, "disparities_px", c.disparities_px,
+          "1 to 1999");
+  require(std::abs(c.min_disparity_px) + c.disparities_px < 2000, "min_disparity_px",
+          c.min_disparity_px, "within 2000 px of 0 with the search range");
+  for (const Image<std::uint8_t>* image : {&pair.left, &pair.right})
+    if (image->width != c.width_px || image->height != c.height_px)
+      throw Error(Trouble::input, "stereo/image: " + std::to_string(image->width) + " x " +
+                                      std::to_string(image->height) + " px, the calibration has " +
+                                      std::to_string(c.width_px) + " x " +
+                                      std::to_string(c.height_px));
+  require(options.block_px >= 1 && options.block_px % 2 == 1 && options.block_px <= 31, "block_px",
+          options.block_px, "odd, 1 to 31");
+  require(options.max_left_right_px > 0, "max_left_right_px", options.max_left_right_px, "positive");
+}
+
+// Whether the block about a pixel shows more than rounding: variance of its grey levels.
+bool has_texture(const Image<std::uint8_t>& image, int column, int row, int block_px) {
+  const int half = std::max(1, block_px / 2);
+  double count = 0, sum = 0, sum2 = 0;
+  for (int y = std::max(0, row - half); y <= std::min(image.height - 1, row + half); ++y)
+    for (int x = std::max(0, column - half); x <= std::min(image.width - 1, column + half); ++x) {
+      const double value = image(x, y);
+      ++count;
+      sum += value;
+      sum2 += value * value;
+    }
+  return sum2 - sum * sum / count > count;  // one grey level, 1 sigma
+}
+
+// Why a pixel has no disparity; empty if it has one. The left-right check asks the pixels of the
+// right image on both sides of the match; one that agrees is enough.
+std::string_view fault(const ImagePair& pair, const StereoOptions& options,
+                       const Image<float>& of_left, const Image<float>& of_right, int column,
+                       int row) {
+  const float disparity = of_left(column, row);
+  if (std::isnan(disparity))
+    return has_texture(pair.left, column, row, options.block_px) ? reason::ambiguous
+                                                                 : reason::no_signal;
+  const double match = column - static_cast<double>(disparity);
+  if (match < 0 || match > pair.right.width - 1) return reason::border;
+  for (const double candidate : {std::floor(match), std::ceil(match)}) {
+    const double back = of_right(static_cast<int>(candidate), row);
+    if (std::abs(back - disparity) <= options.max_left_right_px) return {};
+  }
+  return reason::inconsistent;
+}
+
+}  // namespace
+
+DisparityMap match(const ImagePair& pair, const StereoOptions& options) {
+  check(pair, options);
+  decoding::SemiGlobalOptions search{pair.calibration.min_disparity_px,
+                                     pair.calibration.disparities_px, options.block_px, true};
+  Image<float> disparity = decoding::semi_global(pair.left, pair.right, search);
+  search.reject = false;  // the check needs an opinion of every right pixel
+  const Image<float> of_right = decoding::semi_global_of_right(pair.left, pair.right, search);
+
+  std::vector<std::string_view> faults(disparity.pixels.size());
+  parallel_for(faults.size(), [&](std::size_t i) {
+    faults[i] = fault(pair, options, disparity, of_right, static_cast<int>(i % disparity.width),
+                      static_cast<int>(i / disparity.width));
+  });
+  DisparityMap map;
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    if (faults[i].empty()) continue;
+    disparity.pixels[i] = std::numeric_limits<float>::quiet_NaN();
+    ++map.misses[std::string(faults[i])];
+  }
+  decoding::RefinedDisparity refined = decoding::refine(
+      pair.left, pair.right, disparity, options.block_px, options.max_left_right_px);
+  map.disparity_px = std::move(refined.disparity_px);
+  map.sigma_px = std::move(refined.sigma_px);
+  if (options.disparity_sigma_px > 0)
+    for (float& sigma : map.sigma_px.pixels)
+      if (!std::isnan(sigma)) sigma = static_cast<float>(options.disparity_sigma_px);
+  return map;
+}
+
+Scan points_from(const DisparityMap& map, const StereoCalibration& calibration) {
+  check(calibration);
+  const Image<float>& disparity = map.disparity_px;
+  if (disparity.width != calibration.width_px || disparity.height != calibration.height_px)
+    throw Error(Trouble::input, "stereo/disparity: " + std::to_string(disparity.width) + " x " +
+                                    std::to_string(disparity.height) +
+                                    " px, the calibration has another size");
+  constexpr std::string_view counted_before = "counted before";
+  std::vector<RayOutcome> outcomes(disparity.pixels.size());
+  parallel_for(outcomes.size(), [&](std::size_t i) {
+    if (std::isnan(disparity.pixels[i])) {
+      outcomes[i] = missed(counted_before);
+      return;
+    }
+    const double parallax = disparity.pixels[i] + calibration.doffs_px;
+    const double sigma_px = map.sigma_px.pixels[i];
+    // Infinity within three sigma: no depth.
+    if (!(parallax > 3 * sigma_px) || !(parallax > 0)) {
+      outcomes[i] = missed(reason::undetermined);
+      return;
+    }
+    const double depth_m = calibration.focal_px * calibration.baseline_m / parallax;
+    const Eigen::Vector3d ray(
+        (static_cast<double>(i % disparity.width) - calibration.cx_px) / calibration.focal_px,
+        (static_cast<double>(i / disparity.width) - calibration.cy_px) / calibration.focal_px, 1);
+    // dZ/dd = -Z / (d + doffs); the point moves along its ray, all of it by the same share.
+    const double range_m = depth_m * ray.norm();
+    outcomes[i] =
+        decoding::point_on_ray(ray.normalized(), range_m, range_m * sigma_px / parallax, 0);
+  });
+  Scan scan = decoding::collect(outcomes, {static_cast<std::uint32_t>(disparity.height),
+                                           static_cast<std::uint32_t>(disparity.width)});
+  scan.misses.erase(std::string(counted_before));
+  for (const auto& [reason, count] : map.misses) scan.misses[reason] += count;
+  return scan;
+}
+
+Scan acquire_stereo(const ImagePair& pair, const StereoOptions& options) {
+  Scan scan = points_from(match(pair, options), pair.calibration);
+  for (std::size_t i = 0; i < scan.ray.size(); ++i)
+    scan.cloud.intensity[i] = pair.left.pixels[scan.ray[i]];
+  return scan;
+}
+
+}  // namespace scan
