@@ -51,7 +51,7 @@ std::string known_name(std::string name) {
 // step in every reading can do at most.
 std::array<double, 3> bounds_at(const Sensitivity& point) {
   return {3 * point.shot_m, 3 * point.sensor.read_noise_e * point.per_electron_m,
-          point.sensor.gain_e_per_dn / 2 * point.per_step_m};
+          point.sensor.gain_e_per_dn / 2 * point.worst_per_electron_m};
 }
 
 // The scanner's own sigma with all effects; rounding is uniform, of variance step^2 / 12.
