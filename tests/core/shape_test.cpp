@@ -221,7 +221,7 @@ void expect_closest(const std::string& name, const Shape& shape, double reach_m)
   ASSERT_GT(brute.size(), 500u) << name;
   int farther = 0, tried = 0;
   double worst = 0;
-  for (std::uint64_t i = 0; i < 600; ++i) {
+  for (std::uint64_t i = 0; i < 2000; ++i) {
     RandomStream random(7, 0, i);
     const Eigen::Vector3d x = point_in_cube(random, 1);
     if (std::abs(field(shape, x).value_m) > reach_m) continue;
