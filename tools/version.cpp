@@ -7,7 +7,7 @@
 #endif
 #include <Eigen/Core>
 #include <ceres/version.h>
-#include <embree3/rtcore_version.h>
+#include <embree3/rtcore_config.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/version.hpp>
 #include <pcl/pcl_config.h>
