@@ -152,6 +152,7 @@ void KdTree::k_nearest(const Eigen::Vector3d& query, std::size_t k,
                        std::vector<Neighbour>& found) const {
   NearestKCollector collector(k, found);
   tree_->search(query, collector);
+  collector.finish();
 }
 
 void KdTree::within(const Eigen::Vector3d& query, double radius_m,
