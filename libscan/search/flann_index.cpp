@@ -86,6 +86,7 @@ void FlannIndex::k_nearest(const Eigen::Vector3d& query, std::size_t k,
                            std::vector<Neighbour>& found) const {
   NearestKCollector collector(k, found);
   tree_->visit(query, collector);
+  collector.finish();
 }
 
 void FlannIndex::within(const Eigen::Vector3d& query, double radius_m,

@@ -58,16 +58,37 @@ class LeafBlocks {
     const Eight distance2 = (of.x - x).square() + (of.y - y).square() + (of.z - z).square();
     std::uint32_t hits = 0;
     for (std::uint32_t i = 0; i < width; ++i) hits |= distance2[i] <= limit2 ? bit[i] : 0;
+    if constexpr (Collector::keeps_one) {
+      if (hits == 0) return;
+      // The nearest first: it shrinks the limit so far that the others need no look.
+      const int i = nearest_of(hits, distance2);
+      offer(block, i, screen);
+      hits &= ~bit[i];
+    }
     for (; hits != 0; hits &= hits - 1) {
       const int i = std::countr_zero(hits);
-      if (!(distance2[i] <= screen.limit2())) continue;  // the limit may have shrunk meanwhile
-      const Exact& exact = exact_[block * width + static_cast<std::size_t>(i)];
-      screen.offer(exact.point_m, exact.index);
+      if (distance2[i] <= screen.limit2()) offer(block, i, screen);
     }
   }
 
  private:
   using Eight = Eigen::Array<float, width, 1>;  // Eigen computes four at a time
+
+  static int nearest_of(std::uint32_t hits, const Eight& distance2) {
+    int nearest = std::countr_zero(hits);
+    for (hits &= hits - 1; hits != 0; hits &= hits - 1) {
+      const int i = std::countr_zero(hits);
+      nearest = distance2[i] < distance2[nearest] ? i : nearest;
+    }
+    return nearest;
+  }
+
+  template <class Collector>
+  void offer(std::size_t block, int i, Screen<Collector>& screen) const {
+    const Exact& exact = exact_[block * width + static_cast<std::size_t>(i)];
+    screen.offer(exact.point_m, exact.index);
+  }
+
   static constexpr std::uint32_t bit[width] = {1, 2, 4, 8, 16, 32, 64, 128};
   struct Coordinates {
     Eight x, y, z;

@@ -51,11 +51,4 @@ LocalQuery::LocalQuery(const LocalFrame& frame, const Eigen::Vector3d& query_m)
   slack = 0x1p-23 * (1 + largest);
 }
 
-float LocalQuery::limit2(double limit2_m2) const {
-  if (!(limit2_m2 >= 0)) return -1;
-  const double limit = std::sqrt(limit2_m2) * units_per_m + slack;
-  const double bound = limit * limit * (1 + 0x1p-20);
-  return bound < largest_float ? static_cast<float>(bound) : std::numeric_limits<float>::infinity();
-}
-
 }  // namespace scan

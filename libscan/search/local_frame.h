@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -49,7 +50,13 @@ struct LocalQuery {
   LocalQuery(const LocalFrame& frame, const Eigen::Vector3d& query_m);
 
   // The float value above which a squared distance in local units is certainly above limit2_m2.
-  float limit2(double limit2_m2) const;
+  float limit2(double limit2_m2) const {
+    if (!(limit2_m2 >= 0)) return -1;
+    const double limit = std::sqrt(limit2_m2) * units_per_m + slack;
+    const double bound = limit * limit * (1 + 0x1p-20);
+    constexpr double largest = std::numeric_limits<float>::max();
+    return bound < largest ? static_cast<float>(bound) : std::numeric_limits<float>::infinity();
+  }
 
   Eigen::Vector3d at_m;
   std::array<float, 3> at;

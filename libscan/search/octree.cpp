@@ -61,8 +61,8 @@ std::array<Points, 8> split(Points points, const Cube& cube) {
 }  // namespace
 
 // Each node knows the smallest boxes of its children's points. Cubes that hold all points of their
-// parent are passed over, so the depth follows the points; a leaf holds up to `leaf_size` points, or
-// any number of equal ones.
+// parent are passed over, so the depth follows the points; a leaf holds up to `leaf_size` points,
+// or any number of equal ones.
 struct Octree::Tree {
   static constexpr std::size_t leaf_size = 32;
   static constexpr int width = 8;
@@ -183,6 +183,7 @@ void Octree::k_nearest(const Eigen::Vector3d& query, std::size_t k,
                        std::vector<Neighbour>& found) const {
   NearestKCollector collector(k, found);
   tree_->visit(query, collector);
+  collector.finish();
 }
 
 void Octree::within(const Eigen::Vector3d& query, double radius_m,

@@ -114,6 +114,7 @@ void PclOctree::k_nearest(const Eigen::Vector3d& query, std::size_t k,
                           std::vector<Neighbour>& found) const {
   NearestKCollector collector(k, found);
   if (tree_->search && k > 0) tree_->visit(query, tree_->radius_of(query, k), collector);
+  collector.finish();
 }
 
 void PclOctree::within(const Eigen::Vector3d& query, double radius_m,
