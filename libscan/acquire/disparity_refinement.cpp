@@ -104,26 +104,43 @@ struct Refined {
   double sigma_px;
 };
 
-Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
-                     const std::vector<WindowPixel>& window, double start, double match_sigma_px) {
+double noise_variance(const Fit& fit) {
   constexpr double rounding_variance = 1.0 / 6;  // two images, 1/12 each
-  Refined best{start, match_sigma_px};
-  Fit fit = fit_at(left, right, window, start);
-  if (fit.count < 6) return best;
-  for (int iteration = 0; iteration < 8 && fit.texture > 0; ++iteration) {
-    // d residual / d disparity = 2 * gradient, so the step is - gradient / texture.
-    const double trial = best.disparity_px - fit.gradient / fit.texture;
+  return std::max(fit.residual / (fit.count - 2), rounding_variance);
+}
+
+// Newton steps on residual / noise2 + (d - start)^2 / match_sigma^2; returns d, `fit` is the one there.
+double descend(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+               const std::vector<WindowPixel>& window, double start, double d,
+               double match_sigma_px, Fit& fit) {
+  const double noise2 = noise_variance(fit);
+  const double prior = 1 / (match_sigma_px * match_sigma_px);
+  const auto cost = [&](const Fit& at, double x) {
+    return at.residual / noise2 + prior * (x - start) * (x - start);
+  };
+  for (int iteration = 0; iteration < 8; ++iteration) {
+    const double trial = d - (fit.gradient / noise2 + prior * (d - start)) /
+                                 (fit.texture / noise2 + prior);
     if (!(std::abs(trial - start) <= farthest_move_px)) break;
     const Fit next = fit_at(left, right, window, trial);
-    if (next.count < fit.count || !(next.residual < fit.residual)) break;
-    const double move = std::abs(trial - best.disparity_px);
-    best.disparity_px = trial;
+    if (next.count < fit.count || !(cost(next, trial) < cost(fit, d))) break;
+    const double move = std::abs(trial - d);
+    d = trial;
     fit = next;
     if (move < 1e-4) break;
   }
-  const double noise2 = std::max(fit.residual / (fit.count - 2), rounding_variance);
-  best.sigma_px = 1 / std::sqrt(fit.texture / noise2 + 1 / (match_sigma_px * match_sigma_px));
-  return best;
+  return d;
+}
+
+Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+                     const std::vector<WindowPixel>& window, double start, double match_sigma_px) {
+  Fit fit = fit_at(left, right, window, start);
+  if (fit.count < 6) return {start, match_sigma_px};
+  // Twice: the first residual holds the error of the start besides the noise.
+  double d = descend(left, right, window, start, start, match_sigma_px, fit);
+  d = descend(left, right, window, start, d, match_sigma_px, fit);
+  return {d, 1 / std::sqrt(fit.texture / noise_variance(fit) +
+                           1 / (match_sigma_px * match_sigma_px))};
 }
 
 }  // namespace

@@ -107,8 +107,9 @@ DisparityMap match(const ImagePair& pair, const StereoOptions& options) {
     disparity.pixels[i] = std::numeric_limits<float>::quiet_NaN();
     ++map.misses[std::string(faults[i])];
   }
+  // What passed the left-right check lies, at three sigma, within its limit.
   decoding::RefinedDisparity refined = decoding::refine(
-      pair.left, pair.right, disparity, options.block_px, options.max_left_right_px);
+      pair.left, pair.right, disparity, options.block_px, options.max_left_right_px / 3);
   map.disparity_px = std::move(refined.disparity_px);
   map.sigma_px = std::move(refined.sigma_px);
   if (options.disparity_sigma_px > 0)
