@@ -39,7 +39,7 @@ struct IcpOptions {
   double stop_rotation_rad = 1e-6;
   double stop_translation_fraction = 1e-6;  // of the source's extent
   // Called after each iteration with the current target_from_source.
-  std::function<void(int iteration, const Pose&)> on_iteration;
+  std::function<void(int iteration, const Pose&)> on_iteration = {};
 };
 
 // Throws scan::Error (usage) naming the option and its limit.

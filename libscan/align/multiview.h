@@ -13,7 +13,7 @@
 namespace scan {
 
 struct MultiviewOptions {
-  IcpOptions icp;
+  IcpOptions icp = {};
   double thin_m = 0;          // voxel side for the joint step; 0: from the data
   int max_rounds = 20;        // correspondences found anew, then one Ceres solve
   double min_overlap = 0.1;   // pairs below this inlier fraction do not count

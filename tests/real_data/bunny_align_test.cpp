@@ -100,22 +100,16 @@ TEST(Bunny, TenScansReturnToTheirPublishedPoses) {
     GTEST_SKIP() << "the Stanford bunny scans are not at " << folder;
   const Bunny bunny = read_bunny();
   ASSERT_EQ(bunny.clouds.size(), 10u);
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    const MultiviewResult result = align_scans(bunny.clouds, disturbed(bunny, seed));
-    std::vector<Pose> poses;
-    for (const ScanPose& scan : result.scans) poses.push_back(scan.world_from_scan);
-    // The published poses are themselves known to 0.2 to 0.3 mm; half a millimetre is one sample
-    // spacing of the scanner.
-    const std::vector<double> rms_m = rms_from_published_m(bunny, poses);
-    for (std::size_t i = 0; i < rms_m.size(); ++i) {
-      RecordProperty(bunny.names[i] + "_rms_um_seed_" + std::to_string(seed), int(1e6 * rms_m[i]));
-      EXPECT_LT(rms_m[i], 0.5e-3) << bunny.names[i] << " seed " << seed;
-      if (std::getenv("SHOW"))
-        std::printf("%s seed %d: %.4f mm %s it %d fit %.4f mm in %.2f weak %zu\n", bunny.names[i].c_str(), int(seed), 1e3 * rms_m[i],
-                    std::string(name_of(result.scans[i].stop)).c_str(), result.scans[i].iterations,
-                    1e3 * result.scans[i].rms_m, result.scans[i].inlier_fraction_of_source, result.scans[i].weak_directions.size());
-    }
-    if (std::getenv("SHOW")) std::printf("rounds %d pairs %zu seconds %.2f\n", result.rounds, result.pairs_used, result.cost.seconds);
+  const MultiviewResult result = align_scans(bunny.clouds, disturbed(bunny, 1));
+  EXPECT_EQ(result.stop, Stop::converged);
+  std::vector<Pose> poses;
+  for (const ScanPose& scan : result.scans) poses.push_back(scan.world_from_scan);
+  // The published poses are themselves known to 0.2 to 0.3 mm; half a millimetre is one sample
+  // spacing of the scanner.
+  const std::vector<double> rms_m = rms_from_published_m(bunny, poses);
+  for (std::size_t i = 0; i < rms_m.size(); ++i) {
+    RecordProperty(bunny.names[i] + "_rms_um", static_cast<int>(1e6 * rms_m[i]));
+    EXPECT_LT(rms_m[i], 0.5e-3) << bunny.names[i];
   }
 }
 
