@@ -13,6 +13,7 @@
 #include <string>
 
 #include "libscan/acquire/acquire.h"
+#include "libscan/core/parallel.h"
 #include "synth/scanner.h"
 
 namespace scan::synth {
