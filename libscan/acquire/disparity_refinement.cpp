@@ -34,6 +34,11 @@ bool sample(const Image<std::uint8_t>& image, double x, int row, Sample& result)
   return true;
 }
 
+double slope_of(const Image<std::uint8_t>& image, int column, int row) {
+  const int before = std::max(0, column - 1), after = std::min(image.width - 1, column + 1);
+  return 0.5 * (image(after, row) - image(before, row));
+}
+
 // One pixel of the window: where it is, and its share of the disparity's slope.
 struct WindowPixel {
   int column, row;
@@ -73,28 +78,33 @@ std::vector<WindowPixel> window_at(const Image<float>& disparity, int column, in
 struct Fit {
   int count = 0;
   double residual = 0;  // sum of squares
-  double texture = 0;   // sum of squared slopes
+  double slopes2 = 0;   // sum of squared slopes of the right image
+  double texture = 0;   // sum of left slope times right slope: free of the noise in the slopes
   double gradient = 0;  // sum of residual times slope
 };
 
 Fit fit_at(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
            const std::vector<WindowPixel>& window, double d) {
   Fit fit;
-  double e = 0, e2 = 0, g = 0, g2 = 0, eg = 0;
+  double e = 0, e2 = 0, g = 0, g2 = 0, eg = 0, h = 0, gh = 0;
   for (const WindowPixel& pixel : window) {
     Sample seen;
     if (!sample(right, pixel.column - d - pixel.offset_px, pixel.row, seen)) continue;
     const double error = left(pixel.column, pixel.row) - seen.value;
+    const double left_slope = slope_of(left, pixel.column, pixel.row);
     ++fit.count;
     e += error;
     e2 += error * error;
     g += seen.slope;
     g2 += seen.slope * seen.slope;
     eg += error * seen.slope;
+    h += left_slope;
+    gh += left_slope * seen.slope;
   }
   if (fit.count == 0) return fit;
   fit.residual = std::max(0.0, e2 - e * e / fit.count);
-  fit.texture = std::max(0.0, g2 - g * g / fit.count);
+  fit.slopes2 = std::max(0.0, g2 - g * g / fit.count);
+  fit.texture = std::max(0.0, gh - g * h / fit.count);
   fit.gradient = eg - e * g / fit.count;
   return fit;
 }
@@ -104,26 +114,46 @@ struct Refined {
   double sigma_px;
 };
 
-Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
-                     const std::vector<WindowPixel>& window, double start, double match_sigma_px) {
+// Of the disparity that minimises the residual. Noise in the slopes adds to slopes2 but not to the
+// texture T: with the variance s^2 of the residuals the estimate has the variance s^2 slopes2 / T^2.
+double information(const Fit& fit) {
   constexpr double rounding_variance = 1.0 / 6;  // two images, 1/12 each
-  Refined best{start, match_sigma_px};
-  Fit fit = fit_at(left, right, window, start);
-  if (fit.count < 6) return best;
-  for (int iteration = 0; iteration < 8 && fit.texture > 0; ++iteration) {
-    // d residual / d disparity = 2 * gradient, so the step is - gradient / texture.
-    const double trial = best.disparity_px - fit.gradient / fit.texture;
+  const double noise2 = std::max(fit.residual / (fit.count - 2), rounding_variance);
+  return fit.slopes2 > 0 ? fit.texture * fit.texture / (fit.slopes2 * noise2) : 0;
+}
+
+// Newton steps on residual * information / slopes2 + (d - start)^2 * prior; returns d, `fit` is the
+// one there.
+double descend(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+               const std::vector<WindowPixel>& window, double start, double d, double prior,
+               Fit& fit) {
+  const double weight = fit.slopes2 > 0 ? information(fit) / fit.slopes2 : 0;
+  const auto cost = [&](const Fit& at, double x) {
+    return at.residual * weight + prior * (x - start) * (x - start);
+  };
+  for (int iteration = 0; iteration < 8; ++iteration) {
+    const double trial = d - (fit.gradient * weight + prior * (d - start)) /
+                                 (fit.slopes2 * weight + prior);
     if (!(std::abs(trial - start) <= farthest_move_px)) break;
     const Fit next = fit_at(left, right, window, trial);
-    if (next.count < fit.count || !(next.residual < fit.residual)) break;
-    const double move = std::abs(trial - best.disparity_px);
-    best.disparity_px = trial;
+    if (next.count < fit.count || !(cost(next, trial) < cost(fit, d))) break;
+    const double move = std::abs(trial - d);
+    d = trial;
     fit = next;
     if (move < 1e-4) break;
   }
-  const double noise2 = std::max(fit.residual / (fit.count - 2), rounding_variance);
-  best.sigma_px = 1 / std::sqrt(fit.texture / noise2 + 1 / (match_sigma_px * match_sigma_px));
-  return best;
+  return d;
+}
+
+Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+                     const std::vector<WindowPixel>& window, double start, double match_sigma_px) {
+  const double prior = 1 / (match_sigma_px * match_sigma_px);
+  Fit fit = fit_at(left, right, window, start);
+  if (fit.count < 6) return {start, match_sigma_px};
+  // Twice: the first residual holds the error of the start besides the noise.
+  double d = descend(left, right, window, start, start, prior, fit);
+  d = descend(left, right, window, start, d, prior, fit);
+  return {d, 1 / std::sqrt(information(fit) + prior)};
 }
 
 }  // namespace
@@ -132,7 +162,7 @@ RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_
                         const Image<float>& disparity_px, int block_px, double match_sigma_px) {
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   RefinedDisparity result{disparity_px, Image<float>(left.width, left.height, unknown)};
-  const int half = std::max(2, block_px / 2);
+  const int half = block_px / 2 + 1;
   parallel_for(disparity_px.pixels.size(), [&](std::size_t i) {
     const double start = disparity_px.pixels[i];
     if (std::isnan(start)) return;

@@ -84,7 +84,7 @@ std::optional<Location> fit_gaussian(const Samples& samples, const Gaussian& sta
 
 std::optional<Location> centroid(const Samples& samples, const Gaussian& start) {
   Location location{start, 0};
-  const double reach = 3 * start.sigma;
+  const double reach = 3 * start.sigma + 1;  // a sample more: sampling is coarse for narrow peaks
   for (int iteration = 0; iteration < 20; ++iteration) {
     const double low = location.shape.centre - reach, high = location.shape.centre + reach;
     double mass = 0, moment = 0, spread = 0;

@@ -36,7 +36,7 @@ struct Samples {
 // does not settle. A free width stays within [0.4, 30] samples.
 std::optional<Location> fit_gaussian(const Samples& samples, const Gaussian& start, Width width);
 
-// Centre of mass over start.centre +- 3 start.sigma, the window moved until it is centred on its own
+// Centre of mass over start.centre +- (3 start.sigma + 1), the window moved until it is centred on its own
 // result (its end samples count by their covered share). None if the signal in it is not positive.
 std::optional<Location> centroid(const Samples& samples, const Gaussian& start);
 
