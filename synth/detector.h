@@ -17,9 +17,6 @@ struct DetectorEffects {
   bool quantisation = true;  // off: see delivered_sensor
 };
 
-// Throws scan::Error (input) naming field, value and limit.
-void check(const Sensor& sensor);
-
 // The sensor whose numbers read_pixel delivers, to be handed on in the frames' calibration. Without
 // quantisation the steps are 64 times finer (a pixel stays a whole number), or as much as 16 bits hold.
 Sensor delivered_sensor(const Sensor& sensor, const DetectorEffects& effects);
