@@ -126,12 +126,18 @@ class Search {
   }
 
  private:
-  void offer(const Eigen::Vector3d& point) {
+  bool lies_on_surface(const Eigen::Vector3d& point) const {
+    const double tolerance_m = 1e-13 * reach_m_ + 1e-11 * (point - x_).norm();
+    return point.allFinite() && std::abs(field(whole_, point).value_m) <= tolerance_m;
+  }
+
+  const Eigen::Vector3d& offer(const Eigen::Vector3d& point) {
     const double distance_m = (point - x_).norm();
-    if (!(distance_m < best_m_)) return;  // also when it is not finite
-    if (std::abs(field(whole_, point).value_m) > 1e-13 * reach_m_ + 1e-11 * distance_m) return;
-    best_ = point;
-    best_m_ = distance_m;
+    if (distance_m < best_m_ && lies_on_surface(point)) {
+      best_ = point;
+      best_m_ = distance_m;
+    }
+    return point;
   }
 
   void try_face(std::size_t i) {
@@ -159,7 +165,11 @@ class Search {
       if (at_least_m_[indices[i]] >= best_m_) return;
       together[i] = &leaves_[indices[i]];
     }
-    offer(nearest_common_point(together, x_, x_));
+    if (lies_on_surface(offer(nearest_common_point(together, x_, x_)))) return;
+    // from an axis of symmetry the gradients are parallel and lead nowhere: step aside
+    const DistanceField f = field_of(*together[0], x_);
+    const double aside_m = std::abs(f.value_m) + at_least_m_[indices[1]];
+    offer(nearest_common_point(together, x_, x_ + aside_m * f.gradient.unitOrthogonal()));
   }
 
   const PlacedShape& whole_;

@@ -244,7 +244,20 @@ TEST(ClosestPoint, IsAsNearAsAnySurfacePoint) {
   expect_closest("filleted", filleted(), 0.1);
 }
 
-// The wedge y >= |x| tan(60 deg) ... of two half-spaces: the foot is on a face, or on the edge.
+// Two unit spheres whose seam is the circle x = 0 of radius 0.8. On the axis through both centres
+// every gradient is parallel; the nearest surface of the union is the seam (or, beyond the centres,
+// the far side of a sphere).
+TEST(ClosestPoint, OfAUnionIsNotBuriedOnItsAxis) {
+  const PlacedShape both{Pose::Identity(),
+                         CombinedShape{Operation::unite, 0, {at(-0.6, 0, 0, SphereShape{1}),
+                                                             at(0.6, 0, 0, SphereShape{1})}}};
+  for (const double x : {-0.4, -0.1, 0.0, 0.3, 0.4})
+    EXPECT_NEAR((closest_point(both, {x, 0, 0}) - Eigen::Vector3d(x, 0, 0)).norm(),
+                std::min(std::hypot(x, 0.8), 1.6 - std::abs(x)), 1e-9)
+        << x;
+}
+
+// Two half-spaces meet in an edge; the foot is on a face or on the edge.
 TEST(ClosestPoint, FindsTheEdgeOfAWedge) {
   for (const double half_angle : {0.2, 0.5, 1.0, 1.4}) {
     // the solid |x| < z tan(half_angle), edge along y, opening towards +z

@@ -14,7 +14,8 @@ namespace {
 
 // Three rays hit at ranges 2, 5 and 3 m; the fourth hits nothing.
 ScanTruth truth() {
-  ScanTruth t{.name = "000"};
+  ScanTruth t;
+  t.name = "000";
   t.rays.resize(4);
   t.rays[0] = {{0, 0, 2}, {0, 0, -1}, 0};
   t.rays[1] = {{3, 0, 4}, {0, 0, -1}, 0};
