@@ -97,5 +97,29 @@ TEST(LaserLineSigma, IsThatOfTheErrors) {
   EXPECT_NEAR(errors.mean_square, 1, 5 * std::sqrt(2 / errors.count) + 0.1);
   EXPECT_NEAR(errors.mean, 0, 5 / std::sqrt(errors.count) + 0.3);
 }
+
+// As above, but neighbours share their windows of 5 x 5 px: as many independent errors as windows
+// fit.
+TEST(StereoPairSigma, IsThatOfTheErrors) {
+  StereoPair s;
+  s.calibration = {.width_px = 240,
+                   .height_px = 180,
+                   .focal_px = 300,
+                   .cx_px = 119.5,
+                   .cy_px = 89.5,
+                   .doffs_px = 4,
+                   .baseline_m = 0.06,
+                   .disparities_px = 48};
+  s.sensor = {.gain_e_per_dn = 12, .read_noise_e = 20, .bits = 8};
+  const Material noisy{.name = "noise", .albedo = 0.9, .texture = NoiseTexture{0.012, 2, 0.9}};
+  const Scene scene = plane_target(0.6, noisy).scene;
+  const Normalised errors =
+      normalised_errors(noisy_scan(s, scene), true_rays(s, RayCaster(scene), Pose::Identity()));
+  EXPECT_GT(errors.count, 38000);
+  const double windows = errors.count / 25;
+  EXPECT_NEAR(errors.mean_square, 1, 5 * std::sqrt(2 / windows));
+  EXPECT_NEAR(errors.mean, 0, 5 / std::sqrt(windows));
+}
+
 }  // namespace
 }  // namespace scan::synth

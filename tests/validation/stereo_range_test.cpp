@@ -157,6 +157,24 @@ void check_range(const Target& target, std::size_t least_points) {
   EXPECT_GE(figures.points, least_points);
 }
 
+// A window fattens the object by its own reach, no further: the void has no texture to match.
+TEST(StereoPairRange, HasNoPointsInTheVoid) {
+  const StereoPair s = stereo_pair();
+  const RayCaster caster(sphere_target(0.7, 0.15, noisy()).scene);
+  const Scan scan = acquire(render(s, caster, Pose::Identity(), {}, {}));
+  const std::vector<RayTruth> truth = true_rays(s, caster, Pose::Identity());
+  const int width = s.calibration.width_px, height = s.calibration.height_px;
+  for (const std::uint32_t ray : scan.ray) {
+    const int column = static_cast<int>(ray) % width, row = static_cast<int>(ray) / width;
+    bool is_near_object = false;
+    for (int y = std::max(0, row - margin_px); y <= std::min(height - 1, row + margin_px); ++y)
+      for (int x = std::max(0, column - margin_px); x <= std::min(width - 1, column + margin_px);
+           ++x)
+        is_near_object |= truth[y * width + x].object >= 0;
+    EXPECT_TRUE(is_near_object) << "column " << column << ", row " << row;
+  }
+}
+
 // Points at all but the strip that the right camera does not see, and the borders.
 TEST(StereoPairRange, OfAPlaneIsExactButForRoundingAndResampling) {
   check_range(plane_target(0.6, noisy()), 25000);
