@@ -18,8 +18,8 @@ struct Sensitivity {
   Sensor sensor;
 };
 
-// Working points from the strongest to the weakest signal that the scanner is meant for: a white target
-// near and a dark one (albedo 0.1) far.
+// Working points from the strongest to the weakest signal that the scanner is meant for: a white
+// target near and a dark one (albedo 0.1) far.
 std::vector<Sensitivity> sensitivities(const Scanner& scanner);
 
 }  // namespace scan::synth

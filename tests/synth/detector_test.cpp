@@ -17,7 +17,8 @@ struct Statistics {
   double variance = 0;
 };
 
-Statistics statistics(const Sensor& sensor, const DetectorEffects& effects, double expected_e, int count) {
+Statistics statistics(const Sensor& sensor, const DetectorEffects& effects, double expected_e,
+                      int count) {
   RandomStream random(1, 2, 3);
   double sum = 0, squares = 0;
   for (int i = 0; i < count; ++i) {
@@ -31,7 +32,8 @@ Statistics statistics(const Sensor& sensor, const DetectorEffects& effects, doub
 
 // EMVA 1288, eq. 10 f.: mean = K mu_e + offset, variance = K^2 (sigma_d^2 + mu_e) + 1/12 DN^2.
 TEST(Detector, HasTheMeanAndVarianceOfEmva1288) {
-  const Sensor sensor{.gain_e_per_dn = 4, .offset_dn = 64, .read_noise_e = 12, .full_well_e = 1e6, .bits = 16};
+  const Sensor sensor{
+      .gain_e_per_dn = 4, .offset_dn = 64, .read_noise_e = 12, .full_well_e = 1e6, .bits = 16};
   const int count = 400000;
   for (const double mean_e : {0.0, 1.0, 2.0, 20.0, 1000.0, 100000.0}) {
     const double variance = (mean_e + 144) / 16 + 1.0 / 12;
@@ -89,7 +91,8 @@ TEST(Detector, WithoutQuantisationDeliversFinerSteps) {
   const Sensor delivered = delivered_sensor(sensor, smooth);
   for (double electrons = 0; electrons < 10000; electrons += 7.3) {
     const double dn = read_pixel(sensor, smooth, electrons, random);
-    EXPECT_NEAR((dn - delivered.offset_dn) * delivered.gain_e_per_dn, electrons, 40.0 / 64 / 2 + 1e-9);
+    EXPECT_NEAR((dn - delivered.offset_dn) * delivered.gain_e_per_dn, electrons,
+                40.0 / 64 / 2 + 1e-9);
   }
   EXPECT_EQ(delivered_sensor({.bits = 16}, smooth).bits, 16) << "a pixel holds no more";
   EXPECT_EQ(delivered_sensor(sensor, {}).bits, 8);

@@ -26,9 +26,13 @@ LaserLine small_laser() {
           .sensor = {}};
 }
 
-double focus_z(const LaserLine& s) { return s.baseline_m / std::tan(s.triangulation_rad); }
+double focus_z(const LaserLine& s) {
+  return s.baseline_m / std::tan(s.triangulation_rad);
+}
 
-Scene white_scene(std::vector<Object> objects) { return {std::move(objects), {plain(1)}}; }
+Scene white_scene(std::vector<Object> objects) {
+  return {std::move(objects), {plain(1)}};
+}
 
 // A camera at the world's origin with its sheet.
 struct Bench {
@@ -37,7 +41,9 @@ struct Bench {
   RayCaster caster;
   LaserView view;
   Bench(const LaserLine& s, const Scene& scene)
-      : scanner(s), sheet(laser_sheet(scanner)), caster(scene),
+      : scanner(s),
+        sheet(laser_sheet(scanner)),
+        caster(scene),
         view{scanner, sheet, caster, Pose::Identity()} {}
   double electrons(double column, double row) const {
     return view.electrons(*ray_through(scanner.camera, {column, row}));
@@ -47,7 +53,9 @@ struct Bench {
 TEST(LaserSheet, HoldsTheLaserTheFocusAndTheCamerasYAxis) {
   const LaserLine s = small_laser();
   const LaserSheet sheet = laser_sheet(s);
-  const auto distance = [&](const Eigen::Vector3d& x) { return sheet.normal.dot(x) - sheet.offset_m; };
+  const auto distance = [&](const Eigen::Vector3d& x) {
+    return sheet.normal.dot(x) - sheet.offset_m;
+  };
   EXPECT_NEAR(distance({s.baseline_m, 0, 0}), 0, 1e-16);
   EXPECT_NEAR(distance({0, 0, focus_z(s)}), 0, 1e-16);
   EXPECT_NEAR(sheet.normal.y(), 0, 0);
@@ -55,8 +63,8 @@ TEST(LaserSheet, HoldsTheLaserTheFocusAndTheCamerasYAxis) {
   EXPECT_NEAR(fan_direction(sheet, 0.3).dot(sheet.normal), 0, 1e-16);
 }
 
-// On a plane at z the sheet's middle stands at x = b - z tan(theta). A beam of 10 um moves the brightness'
-// centre by its slope sin(theta)/r times sigma^2, below 1e-6 px.
+// On a plane at z the sheet's middle stands at x = b - z tan(theta). A beam of 10 um moves the
+// brightness' centre by its slope sin(theta)/r times sigma^2, below 1e-6 px.
 TEST(LaserStripe, LiesWhereTheLightPlaneMeetsThePlane) {
   LaserLine s = small_laser();
   s.beam_radius_m = 1e-5;
@@ -89,14 +97,16 @@ TEST(LaserStripe, HasItsPeakElectronsOnAWhiteTargetAtTheFocus) {
   for (const double tilt : {theta, -theta}) {
     const double gain = std::cos(theta + tilt) / std::cos(theta);
     EXPECT_NEAR(Bench(s, white_scene({plane_at(z, tilt)})).electrons(79.5, 59.5),
-                s.peak_electrons * gain, 1e-9 * s.peak_electrons) << tilt;
+                s.peak_electrons * gain, 1e-9 * s.peak_electrons)
+        << tilt;
   }
   Scene grey = white_scene({plane_at(z)});
   grey.materials[0].albedo = 0.25;
   EXPECT_NEAR(Bench(s, grey).electrons(79.5, 59.5), s.peak_electrons / 4, 1e-9 * s.peak_electrons);
 }
 
-// Integral of the Gaussian across the plane: peak w sqrt(pi / 2), wider by 1 / cos(theta) on the target.
+// Integral of the Gaussian across the plane: peak w sqrt(pi / 2), wider by 1 / cos(theta) on the
+// target.
 TEST(LaserStripe, HoldsTheEnergyOfItsGaussian) {
   const LaserLine s = small_laser();
   const Bench bench(s, white_scene({plane_at(focus_z(s))}));
@@ -104,8 +114,8 @@ TEST(LaserStripe, HoldsTheEnergyOfItsGaussian) {
   const double step = 1e-3;
   for (double u = -3; u <= 3; u += step) sum += bench.electrons(79.5 + u, 59.5) * step;
   const double px_per_m = 300 / focus_z(s);
-  const double expected =
-      s.peak_electrons * s.beam_radius_m * std::sqrt(std::numbers::pi / 2) / std::cos(theta) * px_per_m;
+  const double expected = s.peak_electrons * s.beam_radius_m * std::sqrt(std::numbers::pi / 2) /
+                          std::cos(theta) * px_per_m;
   // the slope of brightness across the stripe is odd; its square is 1e-7 here
   EXPECT_NEAR(sum / expected, 1, 1e-6);
 }
@@ -167,12 +177,12 @@ TEST(LaserImages, MissNoLightOutsideTheTracedBand) {
   s.beam_radius_m = 4e-4;  // half a pixel
   const auto placed = [](double rx, double ry, double z) {
     const Eigen::Vector3d turn(rx, ry, 0.3);
-    return make_pose(Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix(), {0, 0, z});
+    return make_pose(Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix(),
+                     {0, 0, z});
   };
-  for (const Object& object :
-       {sphere_at({0.005, 0.01, 0.17}, 0.03), plate(0.15, -0.002, 0.02),
-        Object{"bud", placed(0.5, 0.4, 0.2), bud(), 0},
-        Object{"bracket", placed(2, 0.4, 0.2), bracket(), 0}}) {
+  for (const Object& object : {sphere_at({0.005, 0.01, 0.17}, 0.03), plate(0.15, -0.002, 0.02),
+                               Object{"bud", placed(0.5, 0.4, 0.2), bud(), 0},
+                               Object{"bracket", placed(2, 0.4, 0.2), bracket(), 0}}) {
     const Bench bench(s, white_scene({object, plane_at(0.25)}));
     const Image<std::uint8_t> band = lit_band(bench.view);
     int lit = 0, outside = 0, traced = 0;
@@ -213,7 +223,8 @@ TEST(LaserTruth, LiesOnSurfaceLightPlaneAndRow) {
       const Eigen::Vector3d x = poses[step].inverse() * ray.point_in_scanner;
       EXPECT_NEAR(sheet.normal.dot(x) - sheet.offset_m, 0, 1e-15);
       EXPECT_NEAR((ray.point_in_scanner - centre).norm(), radius, 1e-14);
-      EXPECT_NEAR((ray.normal_in_scanner - (ray.point_in_scanner - centre) / radius).norm(), 0, 1e-12);
+      EXPECT_NEAR((ray.normal_in_scanner - (ray.point_in_scanner - centre) / radius).norm(), 0,
+                  1e-12);
       // on_row's own limit, and its looser one where the surface turns away from the light
       EXPECT_NEAR(project(s.camera, x)->y(), row, 1e-8);
       EXPECT_LT((ray.point_in_scanner - centre).dot(x), 0.01 * radius) << "it faces the camera";
@@ -320,7 +331,8 @@ TEST(LaserImages, HaveReadNoiseInTheDark) {
   s.peak_electrons = 0;
   s.steps = 2;
   s.sensor = {.gain_e_per_dn = 2, .offset_dn = 100, .read_noise_e = 10, .bits = 12};
-  const RawFrames frames = render(s, RayCaster(white_scene({plane_at(0.2)})), Pose::Identity(), {}, {});
+  const RawFrames frames =
+      render(s, RayCaster(white_scene({plane_at(0.2)})), Pose::Identity(), {}, {});
   const auto& images = std::get<StripeImages>(frames).images;
   double sum = 0, squares = 0;
   for (const auto& image : images)
@@ -345,8 +357,8 @@ TEST(LaserImages, AreTheSameFarFromTheOrigin) {
     const Eigen::Vector3d offset(offset_m, offset_m, -offset_m);
     Scene scene = white_scene({sphere_at({0, 0, 0.1875}, 0.03125), plane_at(0.25)});
     for (Object& object : scene.objects) object.world_from_object.translation() += offset;
-    const RawFrames frames = render(s, RayCaster(scene),
-                                    make_pose(Eigen::Matrix3d::Identity(), offset), {}, noise_free);
+    const RawFrames frames =
+        render(s, RayCaster(scene), make_pose(Eigen::Matrix3d::Identity(), offset), {}, noise_free);
     return std::get<StripeImages>(frames).images[0].pixels;
   };
   const auto near = image_at(0), far = image_at(0x1p20);

@@ -20,10 +20,16 @@ LaserLine laser() {
 
 std::vector<Scanner> every_scanner() {
   StereoPair stereo;
-  stereo.calibration = {.width_px = 64, .height_px = 48, .focal_px = 60, .cx_px = 31.5, .cy_px = 23.5,
-                        .baseline_m = 0.1, .disparities_px = 16};
+  stereo.calibration = {.width_px = 64,
+                        .height_px = 48,
+                        .focal_px = 60,
+                        .cx_px = 31.5,
+                        .cy_px = 23.5,
+                        .baseline_m = 0.1,
+                        .disparities_px = 16};
   PhaseCamera phase{.camera = {64, 48, 60, 60, 31.5, 23.5}, .sensor = {}};
-  return {laser(), stereo, phase, PulsedLidar{.pattern = RasterPattern{4, 4, 0.1, 0.1}, .sensor = {}}};
+  return {laser(), stereo, phase,
+          PulsedLidar{.pattern = RasterPattern{4, 4, 0.1, 0.1}, .sensor = {}}};
 }
 
 const EffectDecision& named(const EffectPlan& plan, const std::string& effect) {
@@ -104,12 +110,13 @@ TEST(EffectPlan, NamesTheNearestKnownEffect) {
   }
 }
 
-// The laser's figures against the least-squares fit itself: a Gaussian of the same width, sampled per
-// pixel, its slope matched to the error.
+// The laser's figures against the least-squares fit itself: a Gaussian of the same width, sampled
+// per pixel, its slope matched to the error.
 TEST(Sensitivity, OfThePeakIsThatOfTheLeastSquaresFit) {
   const LaserLine scanner = laser();
   const double z = scanner.baseline_m / std::tan(scanner.triangulation_rad);
-  const double stripe_px = scanner.beam_radius_m / 2 / std::cos(scanner.triangulation_rad) * 800 / z;
+  const double stripe_px =
+      scanner.beam_radius_m / 2 / std::cos(scanner.triangulation_rad) * 800 / z;
   const double s = std::sqrt(stripe_px * stripe_px + 1.0 / 12), height = scanner.peak_electrons;
   double slope2 = 0, slope1 = 0, shot = 0;
   const double step = 1e-3;
@@ -122,12 +129,14 @@ TEST(Sensitivity, OfThePeakIsThatOfTheLeastSquaresFit) {
   const double m_per_px = z * z / (scanner.baseline_m * 800);
   const Sensitivity bright = sensitivities(scanner).front();
   EXPECT_NEAR(bright.per_electron_m, m_per_px / std::sqrt(slope2), 1e-6 * bright.per_electron_m);
-  EXPECT_NEAR(bright.worst_per_electron_m, m_per_px * slope1 / slope2, 1e-5 * bright.worst_per_electron_m);
+  EXPECT_NEAR(bright.worst_per_electron_m, m_per_px * slope1 / slope2,
+              1e-5 * bright.worst_per_electron_m);
   EXPECT_NEAR(bright.shot_m, m_per_px / std::sqrt(shot), 1e-6 * bright.shot_m);
 }
 
 TEST(Sensitivity, OfThePhaseIsThatOfTheArcTangent) {
-  PhaseCamera scanner{.camera = {64, 48, 60, 60, 31.5, 23.5}, .frequencies_hz = {40e6}, .sensor = {}};
+  PhaseCamera scanner{
+      .camera = {64, 48, 60, 60, 31.5, 23.5}, .frequencies_hz = {40e6}, .sensor = {}};
   const Sensitivity near = sensitivities(scanner).front();
   const double amplitude = scanner.contrast * scanner.electrons_at_1m, phi = 0.7, h = 1e-3;
   double squares = 0;

@@ -20,7 +20,8 @@ Eigen::Vector3d random_vector(RandomStream& random) {
   return {x, y, z};
 }
 
-Scene scene_of(std::vector<std::variant<Shape, Mesh>> geometries, const Pose& pose = Pose::Identity()) {
+Scene scene_of(std::vector<std::variant<Shape, Mesh>> geometries,
+               const Pose& pose = Pose::Identity()) {
   Scene scene;
   scene.materials.push_back({});
   for (auto& geometry : geometries) scene.objects.push_back({"", pose, std::move(geometry), 0});
@@ -31,8 +32,8 @@ Pose at(double x, double y, double z) {
   return make_pose(Eigen::Matrix3d::Identity(), {x, y, z});
 }
 
-// A closed sphere-like mesh with bumps; coordinates are whole multiples of 2^-24 m, so that offsets of
-// up to 1e7 m change no bit of its shape.
+// A closed sphere-like mesh with bumps; coordinates are whole multiples of 2^-24 m, so that offsets
+// of up to 1e7 m change no bit of its shape.
 Mesh bumpy_ball(int rings, int sectors) {
   Mesh mesh;
   const auto place = [&](double polar, double azimuth) {
@@ -62,7 +63,8 @@ Mesh bumpy_ball(int rings, int sectors) {
 }
 
 // Moller and Trumbore 1997, over all triangles.
-double nearest_by_brute_force(const Mesh& mesh, const Eigen::Vector3d& o, const Eigen::Vector3d& d) {
+double nearest_by_brute_force(const Mesh& mesh, const Eigen::Vector3d& o,
+                              const Eigen::Vector3d& d) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Triangle& t : mesh.triangles) {
     const Eigen::Vector3d a = mesh.vertices[t[0]], ab = mesh.vertices[t[1]] - a,
@@ -96,9 +98,9 @@ TEST(RayCaster, FindsTheTriangleThatBruteForceFinds) {
   EXPECT_GT(hits, 2000);
 }
 
-// R1: rays from outside, aimed exactly at vertices and at points of edges of a closed mesh, hit its front.
-// Being aimed at rounded targets, some pass a silhouette by a rounding; only targets on faces that all look
-// at the origin are counted.
+// R1: rays from outside, aimed exactly at vertices and at points of edges of a closed mesh, hit its
+// front. Being aimed at rounded targets, some pass a silhouette by a rounding; only targets on
+// faces that all look at the origin are counted.
 TEST(RayCaster, LeaksNowhereAtVerticesAndEdges) {
   const Mesh mesh = bumpy_ball(60, 120);
   const RayCaster caster(scene_of({mesh}));
@@ -126,8 +128,9 @@ TEST(RayCaster, LeaksNowhereAtVerticesAndEdges) {
       bool in_view = true;
       for (const int corner : {0, 1})
         for (const std::uint32_t face : around[t[corner]])
-          in_view &= area_vector(mesh, mesh.triangles[face]).normalized().dot(
-                         (target - origin).normalized()) < -1e-6;
+          in_view &= area_vector(mesh, mesh.triangles[face])
+                         .normalized()
+                         .dot((target - origin).normalized()) < -1e-6;
       if (!in_view) continue;
       ++part.aimed;
       const auto hit = caster.closest(origin, (target - origin).normalized());
@@ -160,8 +163,8 @@ TEST(RayCaster, CrossesAClosedMeshAnEvenNumberOfTimes) {
   }
 }
 
-// R2. An offset that doubles hold together with the scene's coordinates changes ranges by the rounding of
-// the offset ray only.
+// R2. An offset that doubles hold together with the scene's coordinates changes ranges by the
+// rounding of the offset ray only.
 TEST(RayCaster, GivesTheSameRangesFarFromTheOrigin) {
   const Mesh mesh = bumpy_ball(40, 80);
   const auto ranges_at = [&](double offset_m) {
@@ -175,7 +178,8 @@ TEST(RayCaster, GivesTheSameRangesFarFromTheOrigin) {
       const Eigen::Vector3d origin =
           (random_vector(random).normalized() * 4 * 0x1p20).array().round() * 0x1p-20;
       const Eigen::Vector3d direction = (0.8 * random_vector(random) - origin).normalized();
-      const auto hit = caster.closest(origin + Eigen::Vector3d(offset_m, -offset_m, offset_m), direction);
+      const auto hit =
+          caster.closest(origin + Eigen::Vector3d(offset_m, -offset_m, offset_m), direction);
       ranges.push_back(hit ? hit->distance_m : -1);
     }
     return ranges;
@@ -184,15 +188,18 @@ TEST(RayCaster, GivesTheSameRangesFarFromTheOrigin) {
   for (const double offset_m : {1e3, 1e6, 1e7}) {
     const std::vector<double> far = ranges_at(offset_m);
     double largest = 0;
-    for (std::size_t i = 0; i < near.size(); ++i) largest = std::max(largest, std::abs(far[i] - near[i]));
-    EXPECT_LT(largest, 4e-9) << offset_m;  // 1e-9 of the extent of 4 m; a hit turned miss would be metres
+    for (std::size_t i = 0; i < near.size(); ++i)
+      largest = std::max(largest, std::abs(far[i] - near[i]));
+    EXPECT_LT(largest, 4e-9)
+        << offset_m;  // 1e-9 of the extent of 4 m; a hit turned miss would be metres
   }
 }
 
 // R4.
 TEST(RayCaster, NeverHitsTrianglesWithoutArea) {
   Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0.5, 0, 0}, {0.1, 0.3, 0.7}, {0.4, 1.2, 2.8}, {0.2, 0.6, 1.4}};
+  mesh.vertices = {{0, 0, 0},       {1, 0, 0},       {0.5, 0, 0},
+                   {0.1, 0.3, 0.7}, {0.4, 1.2, 2.8}, {0.2, 0.6, 1.4}};
   mesh.triangles = {{0, 0, 0}, {0, 1, 2}, {0, 1, 1}, {3, 4, 5}};
   const RayCaster caster(scene_of({mesh}));
   for (std::uint64_t i = 0; i < 10000; ++i) {
@@ -221,7 +228,8 @@ TEST(RayCaster, HitsANeedleOnlyWhereItIs) {
 // R5.
 TEST(RayCaster, GivesCoincidentSurfacesToTheLowestObject) {
   const Mesh square{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-  const Mesh turned{{{-1.1, -1, 0}, {1, -1.3, 0}, {1.2, 1, 0}, {-1, 1.4, 0}}, {{0, 1, 3}, {1, 2, 3}}};
+  const Mesh turned{{{-1.1, -1, 0}, {1, -1.3, 0}, {1.2, 1, 0}, {-1, 1.4, 0}},
+                    {{0, 1, 3}, {1, 2, 3}}};
   const Pose tilted = exp((Vector6() << 0.3, 0.2, 0.1, 5, 6, 7).finished());
   for (const bool swapped : {false, true}) {
     const RayCaster caster(swapped ? scene_of({turned, square, Shape{PlaneShape{}}}, tilted)
@@ -230,15 +238,16 @@ TEST(RayCaster, GivesCoincidentSurfacesToTheLowestObject) {
       RandomStream random(6, 0, i);
       const Eigen::Vector3d target(1.8 * random.uniform() - 0.9, 1.8 * random.uniform() - 0.9, 0);
       const Eigen::Vector3d origin = target + Eigen::Vector3d(0.3, 0.1, 1);
-      const auto hit = caster.closest(tilted * origin,
-                                      tilted.linear() * (target - origin).normalized());
+      const auto hit =
+          caster.closest(tilted * origin, tilted.linear() * (target - origin).normalized());
       ASSERT_TRUE(hit);
       EXPECT_EQ(hit->object, 0);
     }
   }
 }
 
-// R6: on a convex body every light in front of the surface is seen, however small or large the body.
+// R6: on a convex body every light in front of the surface is seen, however small or large the
+// body.
 TEST(Occlusion, HasNoAcneOnSpheresOfAnySize) {
   for (const double radius : {1e-6, 1e-3, 1.0, 1e6}) {
     const RayCaster caster(scene_of({Shape{SphereShape{radius}}}, at(3 * radius, 0, -radius)));
@@ -331,7 +340,8 @@ TEST(RayCaster, GivesTheSameBitsOnAnyNumberOfThreads) {
     parallel_for(ranges.size(), [&](std::size_t i) {
       RandomStream random(11, 0, i);
       const Eigen::Vector3d origin = 3 * random_vector(random).normalized();
-      if (const auto hit = caster.closest(origin, (0.6 * random_vector(random) - origin).normalized()))
+      if (const auto hit =
+              caster.closest(origin, (0.6 * random_vector(random) - origin).normalized()))
         ranges[i] = hit->distance_m;
     });
     return ranges;

@@ -78,9 +78,7 @@ TEST(Texture, MovesWithItsObject) {
 
 TEST(Texture, CheckersAlternateWithTheirPeriod) {
   const CheckerTexture checker{0.02, 0.75};
-  const auto at = [&](double x, double y, double z) {
-    return texture_factor(checker, {x, y, z});
-  };
+  const auto at = [&](double x, double y, double z) { return texture_factor(checker, {x, y, z}); };
   EXPECT_EQ(at(0.005, 0.005, 0.005), 1);
   EXPECT_EQ(at(0.015, 0.005, 0.005), 0.25);
   EXPECT_EQ(at(0.025, 0.005, 0.005), 1);
@@ -92,7 +90,8 @@ TEST(Texture, NoiseIsUniformOnItsLatticeAndSmoothBetween) {
   double sum = 0, squares = 0;
   const int side = 30;
   for (int i = 0; i < side * side * side; ++i) {
-    const double v = value_noise(Eigen::Vector3d(i % side, i / side % side, i / side / side).array() - 15);
+    const double v =
+        value_noise(Eigen::Vector3d(i % side, i / side % side, i / side / side).array() - 15);
     ASSERT_GE(v, 0);
     ASSERT_LT(v, 1);
     sum += v;
@@ -101,14 +100,17 @@ TEST(Texture, NoiseIsUniformOnItsLatticeAndSmoothBetween) {
   const double count = side * side * side;
   // uniform: mean 1/2, variance 1/12; four standard errors
   EXPECT_NEAR(sum / count, 0.5, 4 / std::sqrt(12 * count));
-  EXPECT_NEAR(squares / count - std::pow(sum / count, 2), 1.0 / 12, 4 * std::sqrt(1.0 / 180 / count));
+  EXPECT_NEAR(squares / count - std::pow(sum / count, 2), 1.0 / 12,
+              4 * std::sqrt(1.0 / 180 / count));
 
   RandomStream random(1, 0, 0);
   for (int i = 0; i < 2000; ++i) {
-    Eigen::Vector3d x(20 * random.uniform() - 10, 20 * random.uniform() - 10, 20 * random.uniform() - 10);
+    Eigen::Vector3d x(20 * random.uniform() - 10, 20 * random.uniform() - 10,
+                      20 * random.uniform() - 10);
     if (i % 2) x.x() = std::round(x.x());  // across a cell's face too
     const double h = 1e-4, slope = (value_noise(x + h * Eigen::Vector3d::UnitX()) -
-                                    value_noise(x - h * Eigen::Vector3d::UnitX())) / (2 * h);
+                                    value_noise(x - h * Eigen::Vector3d::UnitX())) /
+                                   (2 * h);
     ASSERT_LT(std::abs(slope), 1.875 + 1e-3);  // the blend's steepest slope, 15/8
     if (i % 2) {
       ASSERT_NEAR(slope, 0, 1e-6) << "level at the lattice";
@@ -121,8 +123,7 @@ TEST(Texture, NoiseKeepsTheContrastAsked) {
   double low = 1, high = 0;
   for (int i = 0; i < 20000; ++i) {
     RandomStream random(2, 0, i);
-    const double f = texture_factor(
-        noise, {random.uniform(), random.uniform(), random.uniform()});
+    const double f = texture_factor(noise, {random.uniform(), random.uniform(), random.uniform()});
     low = std::min(low, f);
     high = std::max(high, f);
   }
@@ -149,7 +150,8 @@ Cells cells_of(const Shape& shape, double cell_m) {
     for (int y = 0; y < n.y(); ++y)
       for (int x = 0; x < n.x(); ++x)
         cells.solid.push_back(
-            field(shape, box.min() + cell_m * Eigen::Vector3d(x - 1.7, y - 1.7, z - 1.7)).value_m < 0);
+            field(shape, box.min() + cell_m * Eigen::Vector3d(x - 1.7, y - 1.7, z - 1.7)).value_m <
+            0);
   return cells;
 }
 
@@ -180,7 +182,8 @@ int components(Cells cells, bool value) {
   return parts;
 }
 
-// Euler number of the closed cells: vertices - edges + faces - cells, each counted if a cell touches it.
+// Euler number of the closed cells: vertices - edges + faces - cells, each counted if a cell
+// touches it.
 int euler_number(const Cells& cells) {
   int sum = 0;
   for (int z = 0; z <= cells.nz; ++z)
@@ -233,7 +236,9 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, OwnModel, testing::Values("bracket", "bud"),
 
 TEST(Bracket, HasItsBoreItsWallAndItsFillet) {
   const Shape shape = bracket();
-  const auto inside = [&](double x, double y, double z) { return field(shape, {x, y, z}).value_m < 0; };
+  const auto inside = [&](double x, double y, double z) {
+    return field(shape, {x, y, z}).value_m < 0;
+  };
   EXPECT_FALSE(inside(0.022, 0, 0.004)) << "bore";
   EXPECT_TRUE(inside(0.0325, 0, 0.004));
   EXPECT_TRUE(inside(-0.015, 0, 0.025)) << "wall";
@@ -244,7 +249,9 @@ TEST(Bracket, HasItsBoreItsWallAndItsFillet) {
   EXPECT_NEAR(field(shape, {0.01, 0.02, 0.0100}).value_m, 0.002, 1e-15) << "flat foot beyond it";
 }
 
-TEST(Catalogue, KnowsTwoWords) { EXPECT_FALSE(catalogue_shape("teapot")); }
+TEST(Catalogue, KnowsTwoWords) {
+  EXPECT_FALSE(catalogue_shape("teapot"));
+}
 
 }  // namespace
 }  // namespace scan::synth

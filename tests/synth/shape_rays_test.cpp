@@ -182,7 +182,8 @@ TEST(RayOnTorus, PassesThroughItsHole) {
 }
 
 TEST(TracedRay, FindsGrazingChordsOfABoxBothWays) {
-  // a ray that cuts the edge of a box at 45 degrees in a chord of 2e-6: a march must not step over it
+  // a ray that cuts the edge of a box at 45 degrees in a chord of 2e-6: a march must not step over
+  // it
   const double depth = 1e-6, r = std::sqrt(0.5);
   const BoxShape box{{2, 2, 2}};
   const Eigen::Vector3d corner(1, 0, 1), inward = Eigen::Vector3d(-1, 0, -1) * r;
@@ -205,8 +206,8 @@ TEST(TracedRay, EndsSoonAlongAFlatFace) {
 
 TEST(RayFromASurface, DoesNotHitItAtZero) {
   RandomStream random(4, 0, 0);
-  const std::vector<Shape> shapes = {
-      SphereShape{0.7}, CylinderShape{0.5, 1.2}, BoxShape{{0.9, 1.1, 0.4}}, TorusShape{0.8, 0.25}};
+  const std::vector<Shape> shapes = {SphereShape{0.7}, CylinderShape{0.5, 1.2},
+                                     BoxShape{{0.9, 1.1, 0.4}}, TorusShape{0.8, 0.25}};
   for (const Shape& shape : shapes)
     for (int i = 0; i < 2000; ++i) {
       const Ray ray = random_ray(random);

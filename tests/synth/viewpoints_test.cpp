@@ -31,8 +31,8 @@ TEST(Turntable, StandsAtEqualAnglesAndLooksAtItsCentre) {
     EXPECT_NEAR(eye.head<2>().norm(), 0.4, 1e-15);
     EXPECT_NEAR(eye.z(), 0.1, 1e-15);
     const Eigen::Vector3d next = poses[(i + 1) % 12].translation() - centre;
-    const double turn = std::atan2(eye.x() * next.y() - eye.y() * next.x(),
-                                   eye.head<2>().dot(next.head<2>()));
+    const double turn =
+        std::atan2(eye.x() * next.y() - eye.y() * next.x(), eye.head<2>().dot(next.head<2>()));
     EXPECT_NEAR(turn, std::numbers::pi / 6, 1e-14);
   }
 }
@@ -47,7 +47,8 @@ TEST(Ring, ReachesBothEndsOfItsArc) {
   EXPECT_NEAR(azimuth(poses.back()), 1.5, 1e-14);
   for (const Pose& pose : poses) expect_looks_at_centre(pose);
   const auto full = true_poses({Ring{4, 0.4, 0, 0, 2 * std::numbers::pi, centre}, {}});
-  EXPECT_GT(translation_distance_m(full.front(), full.back()), 0.5) << "a full turn repeats no place";
+  EXPECT_GT(translation_distance_m(full.front(), full.back()), 0.5)
+      << "a full turn repeats no place";
   EXPECT_EQ(true_poses({Ring{1, 0.4, 0, 0, 1, centre}, {}}).size(), 1u);
 }
 
