@@ -66,7 +66,7 @@ void check(const PhaseCamera& s) {
   require_within("phase_camera/ambient_electrons", s.ambient_electrons, 0, 1e9);
   require_finite("phase_camera/emitter_offset_m", s.emitter_offset_m);
   require_within("phase_camera/sub_rays", s.sub_rays, 1, 64);
-  check(s.sensor);
+  require_sensor("phase_camera", s.sensor, 16);
   require_positive("phase_camera/max_range_m", s.max_range_m);
 }
 

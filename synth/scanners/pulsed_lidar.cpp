@@ -29,13 +29,6 @@ double window_start_s(const PulsedLidar& s) {
   return 2 * s.min_range_m / speed_of_light_m_s - window_margin_sigmas * s.pulse_sigma_s;
 }
 
-// Of the pulse as recorded: the variance of the sampling interval, h^2 / 12, adds to the pulse's
-// own.
-double recorded_sigma_s(const PulsedLidar& s) {
-  return std::sqrt(s.pulse_sigma_s * s.pulse_sigma_s +
-                   s.sample_interval_s * s.sample_interval_s / 12);
-}
-
 // Enough that the last sample lies at or behind the window's end. May exceed what an integer holds.
 double samples_in_window(const PulsedLidar& s) {
   const double length_s = 2 * (s.max_range_m - s.min_range_m) / speed_of_light_m_s +
@@ -144,7 +137,7 @@ void check(const PulsedLidar& s) {
   require_within("pulsed_lidar/divergence_rad", s.divergence_rad, 0, 1);
   require_within("pulsed_lidar/exit_radius_m", s.exit_radius_m, 0, 1);
   require_within("pulsed_lidar/sub_rays", s.sub_rays, 1, 64);
-  check(s.sensor);
+  require_sensor("pulsed_lidar", s.sensor, 16);
   require_within("pulsed_lidar/min_range_m", s.min_range_m, 0, 1e9);
   require_within("pulsed_lidar/max_range_m", s.max_range_m, s.min_range_m, 1e9);
   require_size("pulsed_lidar/rows * columns * samples",
@@ -196,7 +189,7 @@ RawFrames render(const PulsedLidar& s, const RayCaster& caster, const Pose& worl
   check(s);
   Waveforms frames{.calibration = {.sample_interval_s = s.sample_interval_s,
                                    .window_start_s = window_start_s(s),
-                                   .pulse_sigma_s = recorded_sigma_s(s),
+                                   .pulse_sigma_s = s.pulse_sigma_s,
                                    .sensor = delivered_sensor(s.sensor, effects)},
                    .grid = grid_of(s),
                    .directions = ray_directions(s),

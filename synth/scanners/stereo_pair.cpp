@@ -88,8 +88,7 @@ void check(const StereoPair& s) {
   require_within("stereo_pair/projector_dots", s.projector_dots, 0, 1e6);
   require_positive("stereo_pair/focus_m", s.focus_m);
   require_within("stereo_pair/sub_rays", s.sub_rays, 1, 64);
-  check(s.sensor);
-  require_within("stereo_pair/sensor.bits", s.sensor.bits, 1, 8);
+  require_sensor("stereo_pair", s.sensor, 8);
 }
 
 double expected_electrons(const StereoPair& s, const RayCaster& caster,
