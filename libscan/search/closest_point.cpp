@@ -35,20 +35,11 @@ Eigen::Vector3d closest_point_on_edges(const Eigen::Vector3d& x, const Corners& 
   return best;
 }
 
-// The corners in their cyclic order, the longest edge between the first two.
-Corners longest_edge_first(const Corners& t) {
-  const double ab = (t[1] - t[0]).squaredNorm(), bc = (t[2] - t[1]).squaredNorm();
-  const double ca = (t[0] - t[2]).squaredNorm();
-  if (ab >= bc && ab >= ca) return t;
-  if (bc >= ca) return {t[1], t[2], t[0]};
-  return {t[2], t[0], t[1]};
-}
-
-// The foot of the perpendicular from x, if it is inside the triangle. The share of the third corner
-// is known to rounding / height only; to find the place along the longest edge by projection after
-// that, and not by a share of its own, keeps the foot right to rounding however thin the triangle.
-std::optional<Eigen::Vector3d> foot_inside(const Eigen::Vector3d& x, const Corners& corners) {
-  const auto [a, b, c] = longest_edge_first(corners);
+// The foot of the perpendicular from x, if it is inside the triangle. The share of c is known to
+// rounding / height only; to find the place along ab by projection after that, and not by a share
+// of its own, keeps the foot right to rounding however thin the triangle.
+std::optional<Eigen::Vector3d> foot_inside(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
+                                           const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ax = x - a, normal = ab.cross(ac);
   const double normal2 = normal.squaredNorm();
   if (!(normal2 > 0)) return std::nullopt;
@@ -64,7 +55,7 @@ std::optional<Eigen::Vector3d> foot_inside(const Eigen::Vector3d& x, const Corne
 // Either the foot of the perpendicular is inside, or the nearest point is on an edge.
 Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
                                           const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  const std::optional<Eigen::Vector3d> foot = foot_inside(x, {a, b, c});
+  const std::optional<Eigen::Vector3d> foot = foot_inside(x, a, b, c);
   return foot ? *foot : closest_point_on_edges(x, {a, b, c});
 }
 
