@@ -35,32 +35,28 @@ Eigen::Vector3d closest_point_on_edges(const Eigen::Vector3d& x, const Corners& 
   return best;
 }
 
-// Where the foot of the perpendicular from x lies in the triangle's plane, if that is inside.
+// The foot of the perpendicular from x, if it is inside the triangle. The share of c is known to
+// rounding / height only; to find the place along ab by projection after that, and not by a share
+// of its own, keeps the foot right to rounding however thin the triangle.
 std::optional<Eigen::Vector3d> foot_inside(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
-                                           const Eigen::Vector3d& ab, const Eigen::Vector3d& ac,
-                                           const Eigen::Vector3d& normal) {
+                                           const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d ab = b - a, ac = c - a, ax = x - a, normal = ab.cross(ac);
   const double normal2 = normal.squaredNorm();
-  const double of_b = (x - a).cross(ac).dot(normal), of_c = ab.cross(x - a).dot(normal);
-  if (!(normal2 > 0 && of_b >= 0 && of_c >= 0 && of_b + of_c <= normal2)) return std::nullopt;
-  return a + (of_b / normal2) * ab + (of_c / normal2) * ac;
+  if (!(normal2 > 0)) return std::nullopt;
+  const double of_c = ab.cross(ax).dot(normal) / normal2;
+  if (!(of_c >= 0 && of_c <= 1)) return std::nullopt;
+  const double of_b = (ax - of_c * ac).dot(ab) / ab.squaredNorm();
+  if (!(of_b >= 0 && of_b + of_c <= 1)) return std::nullopt;
+  return a + of_c * ac + of_b * ab;
 }
 
 }  // namespace
 
-// Inside, the foot of the perpendicular is nearest; else the nearest point is on an edge. The
-// barycentric numbers lose 2 log10(longest edge / height) of their 16 digits, so for a thin
-// triangle the edges, which lose none, are asked too: both answers are points of the triangle, and
-// the nearer one is the better.
+// Either the foot of the perpendicular is inside, or the nearest point is on an edge.
 Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
                                           const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  constexpr double thin = 1e-3;  // height over longest edge
-  const Eigen::Vector3d ab = b - a, ac = c - a, normal = ab.cross(ac);
-  const std::optional<Eigen::Vector3d> foot = foot_inside(x, a, ab, ac, normal);
-  const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()});
-  if (foot && normal.squaredNorm() > thin * thin * longest2 * longest2) return *foot;
-  const Eigen::Vector3d on_edge = closest_point_on_edges(x, {a, b, c});
-  if (foot && (*foot - x).squaredNorm() < (on_edge - x).squaredNorm()) return *foot;
-  return on_edge;
+  const std::optional<Eigen::Vector3d> foot = foot_inside(x, a, b, c);
+  return foot ? *foot : closest_point_on_edges(x, {a, b, c});
 }
 
 // Leaves hold up to `leaf_size` triangles; inner nodes split the widest axis of the triangles'

@@ -15,7 +15,9 @@ struct ClosestPoint {
   double distance_m = 0;
 };
 
-// Nearest point of one triangle (Ericson 2005, section 5.1.5); degenerate triangles are segments or
+// Nearest point of one triangle: the foot of the perpendicular (barycentric, Ericson 2005, section
+// 3.4) or on an edge (section 5.1.2). Its distance is right to a few roundings of the triangle's
+// size and its distance from x, however thin the triangle; degenerate triangles are segments or
 // points.
 Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
                                           const Eigen::Vector3d& b, const Eigen::Vector3d& c);

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
-#include <numbers>
 
 #include "clouds.h"
 #include "libscan/core/error.h"
@@ -32,11 +32,47 @@ double sampled_distance(const Eigen::Vector3d& x, const Corners& t, int steps) {
   return best;
 }
 
-// The conditions that mark the nearest point p of a convex set: no corner lies further towards x
-// than p, (corner - p) . (x - p) <= 0 (the variational inequality of the projection).
-double towards(const Eigen::Vector3d& x, const Eigen::Vector3d& p, const Corners& t) {
-  const Eigen::Vector3d direction = x - p;
-  return std::max({(t.a - p).dot(direction), (t.b - p).dot(direction), (t.c - p).dot(direction)});
+// The same question answered with 113 bits: the distance to the plane if the foot of the
+// perpendicular is inside, else to the nearest edge.
+using Quad = __float128;
+using Quad3 = std::array<Quad, 3>;
+
+Quad3 quad(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+Quad dot(const Quad3& a, const Quad3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Quad3 combine(const Quad3& a, Quad v, const Quad3& b, Quad w, const Quad3& c) {
+  return {a[0] + v * b[0] + w * c[0], a[1] + v * b[1] + w * c[1], a[2] + v * b[2] + w * c[2]};
+}
+
+Quad3 cross(const Quad3& a, const Quad3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Quad squared_distance_to_segment(const Quad3& x, const Quad3& a, const Quad3& b) {
+  const Quad3 ab = combine(b, -1, a, 0, a), ax = combine(x, -1, a, 0, a);
+  Quad along = dot(ab, ab) > 0 ? dot(ab, ax) / dot(ab, ab) : 0;
+  along = along < 0 ? 0 : along > 1 ? 1 : along;
+  const Quad3 rest = combine(ax, -along, ab, 0, ab);
+  return dot(rest, rest);
+}
+
+double distance_in_quad(const Eigen::Vector3d& x_m, const Corners& t) {
+  const Quad3 x = quad(x_m), a = quad(t.a), b = quad(t.b), c = quad(t.c);
+  Quad best = squared_distance_to_segment(x, a, b);
+  for (const Quad other :
+       {squared_distance_to_segment(x, b, c), squared_distance_to_segment(x, c, a)})
+    best = other < best ? other : best;
+  const Quad3 ab = combine(b, -1, a, 0, a), ac = combine(c, -1, a, 0, a);
+  const Quad3 ax = combine(x, -1, a, 0, a);
+  const Quad3 normal = cross(ab, ac);
+  const Quad normal2 = dot(normal, normal), height = dot(ax, normal);
+  const Quad of_b = dot(cross(ax, ac), normal), of_c = dot(cross(ab, ax), normal);
+  const bool inside = of_b >= 0 && of_c >= 0 && of_b + of_c <= normal2;
+  if (normal2 > 0 && inside) best = height * height / normal2;
+  return std::sqrt(static_cast<double>(best));
 }
 
 TEST(ClosestPointOnTriangle, IsKnownInEachOfTheSevenRegions) {
@@ -66,24 +102,28 @@ TEST(ClosestPointOnTriangle, BeatsADenseSampling) {
   }
 }
 
-// For triangles from fat to a height of 1e-15 of their length, and any order of corners.
-TEST(ClosestPointOnTriangle, IsTheProjectionForFatAndForThinTriangles) {
+// From fat triangles to a height of 1e-16 of their length, any corner first; queries all around,
+// and straight above or on the inside, where the foot of the perpendicular decides.
+TEST(ClosestPointOnTriangle, IsRightToRoundingForFatAndForThinTriangles) {
   RandomStream random(22, 0, 0);
-  for (int i = 0; i < 3000; ++i) {
-    const double height = std::pow(10.0, -15 * random.uniform());
+  for (int i = 0; i < 6000; ++i) {
+    const double height = std::pow(10.0, -16 * random.uniform());
     const Eigen::Vector3d a = normal_vector(random), b = a + normal_vector(random);
-    const Eigen::Vector3d c = a + random.uniform() * (b - a) + height * normal_vector(random);
+    const Eigen::Vector3d across = normal_vector(random).cross(b - a).normalized();
+    const Eigen::Vector3d c = a + random.uniform() * (b - a) + height * across;
     std::array<Eigen::Vector3d, 3> corner = {a, b, c};
     std::rotate(corner.begin(), corner.begin() + i % 3, corner.end());
     const Corners t{corner[0], corner[1], corner[2]};
-    const Eigen::Vector3d x = a + 2 * normal_vector(random);
+    const double v = random.uniform() / 2, w = random.uniform() / 2;
+    const double above = i % 8 < 4 ? std::pow(10.0, -12 * random.uniform()) : 0;
+    const Eigen::Vector3d inside = a + v * (b - a) + w * (c - a);
+    const Eigen::Vector3d x =
+        i % 2 == 0 ? Eigen::Vector3d(a + 2 * normal_vector(random))
+                   : Eigen::Vector3d(inside + above * (b - a).cross(across).normalized());
     const Eigen::Vector3d p = closest_point_on_triangle(x, t.a, t.b, t.c);
-    // A barycentric number is off by epsilon / 1e-3 at most where the foot is trusted alone
-    // (height over length 1e-3), and sizes here are below 10: 10 * 10 * 1e3 epsilon. Thinner ones
-    // may take an edge instead of the foot, when the two distances agree to rounding, and then the
-    // corner sticks out towards x by sqrt of that: the distances agree to 100 epsilon.
-    const double tolerance = 1e5 * epsilon + (height < 1e-2 ? 10 * std::sqrt(100 * epsilon) : 0);
-    EXPECT_LE(towards(x, p, t), tolerance) << "height " << height;
+    // Some ten roundings of the sizes that enter: the corners' coordinates, edges and way to x.
+    const double size = x.norm() + a.norm() + b.norm() + c.norm();
+    EXPECT_NEAR((p - x).norm(), distance_in_quad(x, t), 10 * epsilon * size) << "height " << height;
   }
 }
 
@@ -172,13 +212,24 @@ TEST(MeshSearch, AgreesWithBruteForceFarFromZero) {
   const Eigen::Vector3d far(1e7, -1e7, 1e7);
   expect_brute_force(triangle_soup(500, 0.1, far), moved(uniform_cloud(200), 4, far));
   expect_brute_force(triangle_soup(500, 0.1, far), uniform_cloud(50));
+  // On the mesh itself distances are rounding only, and so is the point's place beside its box.
+  const Mesh plane = doubled_plane(12);
+  Mesh tilted = plane;
+  const Eigen::AngleAxisd turn(0.7, Eigen::Vector3d(1, 2, 3).normalized());
+  for (auto& vertex : tilted.vertices) vertex = turn * vertex / 7 + far;
+  Points on_mesh;
+  for (const auto& point : moved(uniform_cloud(2000), 12, {0, 0, 0}))
+    on_mesh.push_back(turn * Eigen::Vector3d(point.x(), point.y(), 0) / 7 + far);
+  expect_brute_force(tilted, on_mesh);
 }
 
 TEST(MeshSearch, TakesTheLowestOfEquallyNearTriangles) {
-  const Mesh plane = doubled_plane(12);
+  Mesh plane = doubled_plane(12);
   Points queries;
   for (double x = -1; x <= 13; x += 0.5)
     for (double y = -1; y <= 13; y += 0.5) queries.emplace_back(x, y, 1.5);  // over corners, edges
+  expect_brute_force(plane, queries);
+  std::reverse(plane.triangles.begin(), plane.triangles.end());  // now the later side is lowest
   expect_brute_force(plane, queries);
 }
 

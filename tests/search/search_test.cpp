@@ -87,8 +87,9 @@ class EachMethod : public testing::TestWithParam<SearchMethod> {
   // Calls test(search, cloud, query, oracle's list) for each cloud and query.
   template <class Test>
   void for_each_case(std::size_t count, Test&& test) {
-    for (const auto& [name, points] : hard_clouds(count)) {
-      SCOPED_TRACE(std::string(name_of(GetParam())) + " on the cloud " + name);
+    for (const NamedCloud& cloud : hard_clouds(count)) {
+      const Points& points = cloud.points;
+      SCOPED_TRACE(std::string(name_of(GetParam())) + " on the cloud " + cloud.name);
       const AnySearch any = make_search(GetParam(), points);
       std::visit(
           [&](const auto& search) {

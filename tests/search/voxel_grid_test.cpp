@@ -92,16 +92,18 @@ TEST(VoxelGrid, MergesAllIntoOneCubeThatHoldsAll) {
 }
 
 TEST(VoxelGrid, ThinsFarFromZeroAsAtZero) {
-  // The offset is a multiple of 2^-20 as the coordinates are: moving them there rounds nothing.
-  Points points = uniform_cloud(2000);
-  for (auto& point : points) point = (point * 0x1p20).array().round() * 0x1p-20;
-  const Eigen::Vector3d offset = Eigen::Vector3d(1, -1, 1) * 0x1p23;
-  const PointCloud here = voxel_grid(bare_cloud(points), 0.125);
-  const PointCloud there = voxel_grid(bare_cloud(moved(points, 1, offset)), 0.125);
+  // The coordinates are multiples of 2^-19, as doubles at 2^33 are: moving them rounds nothing. A
+  // plain sum of 2500 of them there would: it steps by 2^-8.
+  Points points = uniform_cloud(20000);
+  for (auto& point : points) point = (point * 0x1p19).array().round() * 0x1p-19;
+  const Eigen::Vector3d offset = Eigen::Vector3d(1, 1, 1) * 0x1p33;
+  const PointCloud here = voxel_grid(bare_cloud(points), 0.5);
+  const PointCloud there = voxel_grid(bare_cloud(moved(points, 1, offset)), 0.5);
   ASSERT_EQ(here.size(), there.size());
-  // At 2^23 a double steps by 2^-29, and half of it is lost on each axis.
+  // Half a step of 2^-19 is lost when the offset is added again, and no more than half of that in
+  // the difference below.
   for (std::size_t i = 0; i < here.size(); ++i)
-    EXPECT_LT((there.points[i] - offset - here.points[i]).cwiseAbs().maxCoeff(), 0x1p-29);
+    EXPECT_LT((there.points[i] - offset - here.points[i]).cwiseAbs().maxCoeff(), 0x1.8p-20);
 }
 
 TEST(VoxelGrid, TellsCubesApartBeyond32Bits) {
