@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libscan/align/placement.h"
 #include "libscan/align/scan_pairs.h"
@@ -62,7 +63,8 @@ class Alignment {
   void refine();
   DataFrame shared_frame() const;
   JointGates first_gates() const;
-  bool move_scans(const JointPairs& pairs, const DataFrame& frame);
+  std::vector<Vector6> joint_step(const JointPairs& pairs, const DataFrame& frame);
+  bool move_scans(const std::vector<Vector6>& twists, const DataFrame& frame);
   void judge(const JointPairs& pairs, const DataFrame& frame);
   void judge_scan(std::size_t i, const JointPairs& pairs, const DataFrame& frame);
   Stop overall() const;
@@ -75,6 +77,8 @@ class Alignment {
   PreparedScans scans_;
   std::vector<bool> placed_;
   std::vector<bool> still_;  // moved less than the tolerances in the last round
+  double last_step_ = std::numeric_limits<double>::infinity();
+  double step_share_ = 1;
   MultiviewResult result_;
 };
 
@@ -159,21 +163,32 @@ JointGates Alignment::first_gates() const {
           .min_overlap = options_.min_overlap};
 }
 
-// Solves the joint problem and moves the scans; true if none moved beyond the tolerances.
-bool Alignment::move_scans(const JointPairs& pairs, const DataFrame& frame) {
+// The twists of all scans about the frame's centre, in its units. A step that has not become smaller
+// goes to and fro between two sets of pairs: then, and while it lasts, only a part of it is taken.
+std::vector<Vector6> Alignment::joint_step(const JointPairs& pairs, const DataFrame& frame) {
   std::vector<bool> fixed(scans_.size(), true);
   for (const ScanPairForm& form : pairs.forms) fixed[form.source] = fixed[form.target] = false;
   fixed[anchor_] = true;
-  const std::vector<Vector6> twists = solve_forms(pairs.forms, scans_.size(), fixed);
+  std::vector<Vector6> twists = solve_forms(pairs.forms, scans_.size(), fixed);
+  double largest = 0;
+  for (const Vector6& twist : twists) largest = std::max(largest, twist.norm());
+  step_share_ = largest < 0.9 * last_step_ ? std::min(1.0, 2 * step_share_) : step_share_ / 2;
+  last_step_ = largest;
+  for (Vector6& twist : twists) twist *= step_share_;
+  for (Vector6& twist : twists) twist.tail<3>() *= frame.size_m;
+  return twists;
+}
+
+// True if no scan moved beyond the tolerances.
+bool Alignment::move_scans(const std::vector<Vector6>& twists, const DataFrame& frame) {
   bool all_still = true;
   for (std::size_t i = 0; i < scans_.size(); ++i) {
-    Vector6 twist = twists[i];
-    twist.tail<3>() *= frame.size_m;
+    const Vector6& twist = twists[i];
     still_[i] = twist.head<3>().norm() < options_.icp.stop_rotation_rad &&
                 twist.tail<3>().norm() <
                     options_.icp.stop_translation_fraction * 2 * frame.size_m;
     all_still = all_still && still_[i];
-    if (fixed[i]) continue;
+    if (twist.isZero(0)) continue;
     const Eigen::Vector3d& c = frame.centre;
     ScanPose& scan = result_.scans[i];
     const Pose moved =
@@ -194,7 +209,7 @@ void Alignment::refine() {
     pairs = pair_scans(scans_, poses, placed_, frame, gates);
     gates.tukey_limit_m = pairs.tukey_limit_m;
     if (pairs.forms.empty() || result_.rounds == options_.max_rounds) break;
-    done = move_scans(pairs, frame);
+    done = move_scans(joint_step(pairs, frame), frame);
     ++result_.rounds;
     if (progress_) progress_("refine", double(result_.rounds) / options_.max_rounds);
   }

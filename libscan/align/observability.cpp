@@ -52,10 +52,19 @@ struct Information {
   }
 };
 
+// Whether most of the points lie on a surface. Then those that do not are its edges and say nothing;
+// else the points are marks of their own.
+bool is_surface(std::span<const std::uint32_t> used, const LocalSurface& surface) {
+  std::size_t count = 0;
+  for (const std::uint32_t i : used) count += surface.fit(i).shape == LocalShape::surface;
+  return 2 * count >= used.size();
+}
+
 Information gather(std::span<const std::uint32_t> used, std::span<const Eigen::Vector3d> points,
                    std::span<const Eigen::Vector3d> normals, const LocalSurface& surface,
                    const DataFrame& frame) {
   Information sum;
+  const bool marks = normals.empty() && !is_surface(used, surface);
   for (const std::uint32_t i : used) {
     const Eigen::Vector3d arm = (points[i] - frame.centre) / frame.size_m;
     const LocalFit& fit = surface.fit(i);
@@ -63,7 +72,7 @@ Information gather(std::span<const std::uint32_t> used, std::span<const Eigen::V
       sum.add_plane(arm, normals[i], fit);
     } else if (fit.shape == LocalShape::surface) {
       sum.add_plane(arm, fit.direction, fit);
-    } else if (fit.shape != LocalShape::unknown) {
+    } else if (marks && fit.shape != LocalShape::unknown) {
       const Eigen::Vector3d along =
           fit.shape == LocalShape::line ? fit.direction : Eigen::Vector3d::Zero();
       sum.add_mark(arm, Eigen::Matrix3d::Identity() - along * along.transpose());

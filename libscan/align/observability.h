@@ -29,8 +29,8 @@ struct DataFrame {
 
 // Orthonormal basis of the weak motions at the points `used` (indices into `points`, may repeat), as
 // twists about the frame's centre with the translation in units of its size; no columns: none is
-// weak. `normals` has one per point; with none the fits of `surface` stand in, and points without a
-// surface around them count as marks that fix all three coordinates.
+// weak. `normals` has one per point; with none the fits of `surface` stand in; where most points have no
+// surface around them, these count as marks that fix all three coordinates.
 TwistBasis weak_motions(std::span<const std::uint32_t> used, std::span<const Eigen::Vector3d> points,
                         std::span<const Eigen::Vector3d> normals, LocalSurface& surface,
                         const DataFrame& frame);

@@ -50,6 +50,21 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes
   return content;
 }
 
+void make_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return;
+  throw Error(Trouble::output, path.string() + ": " +
+                                   (std::filesystem::exists(path, ignored) ? "is a file, a folder is needed"
+                                                                  : "cannot be created: " + error.message()));
+}
+
+std::string numbered(std::size_t index, std::string_view ending) {
+  const std::string digits = std::to_string(index);
+  return std::string(digits.size() < 3 ? 3 - digits.size() : 0, '0') + digits + std::string(ending);
+}
+
 std::string fingerprint(std::string_view bytes) {
   std::uint64_t hash = 14695981039346656037ull;
   for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ull;

@@ -19,6 +19,13 @@ void write_file(const std::filesystem::path& path, std::string_view content);
 std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes = std::size_t{1}
                                                                                   << 34);
 
+// Creates the folder and those above it where they are missing. Throws scan::Error (output) if that
+// cannot be done or a file stands there.
+void make_folder(const std::filesystem::path& path);
+
+// "007" + ending: how numbered files are called.
+std::string numbered(std::size_t index, std::string_view ending);
+
 // FNV-1a over the bytes, as 16 hex digits: tells whether a stage's inputs are the same as before.
 std::string fingerprint(std::string_view bytes);
 

@@ -92,15 +92,20 @@ const char* name_of(Operation operation) {
 
 ordered_json combined_to_json(const CombinedShape& combined) {
   ordered_json parts = ordered_json::array();
-  for (const PlacedShape& part : combined.parts)
-    parts.push_back({{"shape", to_json(part.shape)},
-                     {"parent_from_shape", to_json(part.parent_from_shape)}});
+  for (const PlacedShape& part : combined.parts) parts.push_back(to_json(part));
   return {{name_of(combined.operation), {{"blend_m", combined.blend_m}, {"parts", parts}}}};
 }
 
 }  // namespace
 
 Shape read_shape(JsonReader& reader) { return read_nested(reader, 0); }
+
+PlacedShape read_placed_shape(JsonReader& reader) { return read_part(reader, 0); }
+
+ordered_json to_json(const PlacedShape& placed) {
+  return {{"shape", to_json(placed.shape)},
+          {"parent_from_shape", to_json(placed.parent_from_shape)}};
+}
 
 ordered_json to_json(const Shape& shape) {
   return std::visit(

@@ -19,6 +19,11 @@ namespace scan {
 // Reads the one-key object above and checks it. scan::Error (input) names the place.
 Shape read_shape(JsonReader& reader);
 
+// One part as above: its shape and where it stands, by position and rotation or by
+// "parent_from_shape": 4x4.
+PlacedShape read_placed_shape(JsonReader& reader);
+nlohmann::ordered_json to_json(const PlacedShape& placed);
+
 // Writes metres, 17 digits: reading it back gives the same shape to the bit.
 nlohmann::ordered_json to_json(const Shape& shape);
 nlohmann::ordered_json to_json(const Pose& pose);  // 4x4, row by row

@@ -114,7 +114,7 @@ TEST(Icp, TellsEachIteration) {
 }
 
 TEST(Icp, PointToPlaneWithoutTargetNormalsIsAnError) {
-  PointCloud cloud = test::bumpy_surface(100, 16);
+  const PointCloud cloud = test::bumpy_surface(2000, 16);
   PointCloud bare;
   bare.points = cloud.points;
   EXPECT_THROW(icp(cloud, bare, Pose::Identity()), Error);

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Calibrations of the four devices as JSON (keys: raw_files.h) and as Middlebury's calib.txt.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "libscan/core/raw_frames.h"
+
+namespace scan {
+
+// What calibration.json holds beside the calibration proper.
+struct LaserLineSetup {
+  LaserLineCalibration calibration;
+  std::vector<Pose> scanner_from_camera;
+};
+struct WaveformSetup {
+  WaveformCalibration calibration;
+  RayGrid grid;
+};
+
+// scan::Error (input) names file and key; "device" must be the one asked for.
+LaserLineSetup read_laser_line_calibration(const std::filesystem::path& path);
+StereoCalibration read_stereo_calibration(const std::filesystem::path& path);  // or calib.txt
+PhaseCalibration read_phase_calibration(const std::filesystem::path& path);
+WaveformSetup read_waveform_calibration(const std::filesystem::path& path);
+
+nlohmann::ordered_json calibration_json(const StripeImages& frames);
+nlohmann::ordered_json calibration_json(const ImagePair& frames);
+nlohmann::ordered_json calibration_json(const PhaseTaps& frames);
+nlohmann::ordered_json calibration_json(const Waveforms& frames);
+
+}  // namespace scan

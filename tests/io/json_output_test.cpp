@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/io/json_output.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "libscan/io/poses.h"
+#include "tests/io/io_test_support.h"
+
+namespace scan {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+std::vector<std::string> keys_of(const ordered_json& object) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.push_back(key);
+  return keys;
+}
+
+TEST(JsonOutput, MeasurementsHaveTheirStableKeys) {
+  const ordered_json free = measurement_json({.name = "genus", .value = 4, .unit = "1", .over = "mesh", .count = 1});
+  EXPECT_EQ(keys_of(free), (std::vector<std::string>{"name", "value", "unit", "over", "count", "limit", "relation", "pass", "reason"}));
+  EXPECT_TRUE(free["limit"].is_null());
+  EXPECT_TRUE(free["relation"].is_null());
+  const ordered_json limited = measurement_json({.name = "accuracy_rms", .value = std::nan(""), .unit = "m", .limit = 0.1, .relation = "<=", .reason = "spec", .pass = false});
+  EXPECT_TRUE(limited["value"].is_null());
+  EXPECT_EQ(limited["limit"], 0.1);
+  EXPECT_EQ(limited["reason"], "spec");
+  EXPECT_EQ(limited["pass"], false);
+}
+
+TEST(JsonOutput, AlignmentIsWhatReadPosesReads) {
+  const TemporaryFolder folder;
+  MultiviewResult result;
+  result.scans.resize(2);
+  Vector6 twist;
+  twist << 1, 2, 3, 1.0 / 3, 5, 6;
+  result.scans[1].world_from_scan = exp(twist);
+  result.scans[1].stop = Stop::converged;
+  const std::vector<std::string> files = {"a.ply", "b.ply"};
+  const ordered_json alignment = alignment_json(files, result, {});
+  EXPECT_EQ(keys_of(alignment["scans"][0]),
+            (std::vector<std::string>{"file", "world_from_scan", "stop", "iterations", "rms_m", "inlier_fraction_of_source", "weak_directions"}));
+  EXPECT_EQ(alignment["scans"][1]["stop"], "converged");
+  EXPECT_EQ(alignment["method"], "point-to-plane");
+  EXPECT_EQ(alignment["search"], "kd-tree");
+  EXPECT_EQ(json_text(alignment).find("seconds"), std::string::npos);
+  write_json(folder / "alignment.json", alignment);
+  const auto poses = read_poses(folder / "alignment.json");
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[1].name, "b.ply");
+  EXPECT_EQ(poses[1].pose.matrix(), result.scans[1].world_from_scan.matrix());
+  error_of([&] { alignment_json(std::span(files).first(1), result, {}); }, Trouble::usage);
+}
+
+TEST(JsonOutput, PairsCarryTheirInformation) {
+  IcpResult result;
+  result.information(2, 3) = 7;
+  result.information(0, 0) = std::nan("");
+  const ordered_json object = icp_json(result);
+  EXPECT_EQ(object["information"][2][3], 7.0);
+  EXPECT_TRUE(object["information"][0][0].is_null());
+  EXPECT_EQ(object["stop"], "too few points");
+}
+
+TEST(JsonOutput, SurfacesTellTheirTopology) {
+  SurfaceResult result;
+  result.surface = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  const ordered_json object = surface_json("ssd", 8, result);
+  EXPECT_EQ(object["triangles"], 4);
+  EXPECT_EQ(object["watertight"], true);
+  EXPECT_EQ(object["genus"], 0);
+  EXPECT_EQ(object["components"], 1);
+  EXPECT_EQ(object["depth"], 8);
+  EXPECT_TRUE(surface_json("delaunay", std::nullopt, result)["depth"].is_null());
+}
+
+TEST(JsonOutput, ScansCountTheirRays) {
+  Scan scan;
+  scan.cloud.points.resize(3);
+  scan.misses = {{"no signal", 2}};
+  EXPECT_EQ(scan_json("scans/000.ply", scan)["rays"], 5);
+  EXPECT_EQ(scan_json("scans/000.ply", scan)["misses"]["no signal"], 2);
+  scan.grid = {2, 4};
+  EXPECT_EQ(scan_json("scans/000.ply", scan)["rays"], 8);
+}
+
+TEST(JsonOutput, ReportsAddUpTheirSeconds) {
+  CommandReport report{.command = "align", .version = "0.1.0"};
+  report.seconds = {{"read", 0.25}, {"align", 0.5}};
+  const ordered_json object = report_json(report);
+  EXPECT_EQ(object["seconds"]["total"], 0.75);
+  EXPECT_FALSE(object.contains("seed"));
+  EXPECT_GT(object["peak_mib"], 0);
+}
+
+TEST(JsonOutput, NumbersReadBackToTheBitAndNamesNeedNotBeUtf8) {
+  RandomStream random(14, 0, 0);
+  for (int i = 0; i < 2000; ++i) {
+    const double number = random.normal() * std::pow(10, 20 * random.normal());
+    EXPECT_EQ(json::parse(json_text(ordered_json(number))).get<double>(), number);
+  }
+  EXPECT_EQ(json_text(ordered_json(0.1)), "0.1\n");
+  EXPECT_NO_THROW(json::parse(json_text(ordered_json("bad \xff name"))));
+}
+
+}  // namespace
+}  // namespace scan

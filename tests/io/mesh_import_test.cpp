@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/io/mesh_import.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "libscan/io/byte_order.h"
+#include "tests/io/io_test_support.h"
+
+namespace scan {
+namespace {
+
+// A tetrahedron whose faces carry their own copies of the corners, as exporters write it, in a node
+// that is moved by (10, 0, 0).
+std::string buffer() {
+  const float corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  std::string bytes;
+  for (const auto& face : faces)
+    for (const int corner : face)
+      for (const float x : corners[corner]) store(bytes, x, std::endian::little);
+  for (std::uint16_t i = 0; i < 12; ++i) store(bytes, i, std::endian::little);
+  return bytes;
+}
+
+std::string document(const std::string& uri) {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+         R"("nodes":[{"children":[1],"translation":[10,0,0]},{"mesh":0}],)"
+         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+         R"("accessors":[{"bufferView":0,"componentType":5126,"count":12,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},)"
+         R"({"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],)"
+         R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":144},{"buffer":0,"byteOffset":144,"byteLength":24}],)"
+         R"("buffers":[{)" + uri + R"("byteLength":168}]})";
+}
+
+std::string glb() {
+  std::string json = document("");
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::string binary = buffer();
+  std::string bytes = "glTF";
+  const auto put = [&](std::size_t number) {
+    store(bytes, static_cast<std::uint32_t>(number), std::endian::little);
+  };
+  put(2), put(12 + 8 + json.size() + 8 + binary.size());
+  put(json.size()), bytes += "JSON" + json;
+  put(binary.size()), bytes += std::string("BIN\0", 4) + binary;
+  return bytes;
+}
+
+void expect_tetrahedron(const Mesh& mesh) {
+  EXPECT_EQ(mesh.vertices.size(), 4u);
+  EXPECT_TRUE(edge_census(mesh).watertight);
+  EXPECT_NEAR(volume_m3(mesh), 1.0 / 6, 1e-6);  // floats: 2^-24 of 10 m is 6e-7
+  EXPECT_EQ(bounds_of(mesh.vertices).min(), Eigen::Vector3d(10, 0, 0));
+}
+
+TEST(Gltf, ReadsBinaryAndTextWithNodesAndWelds) {
+  const TemporaryFolder folder;
+  write_file(folder / "a.glb", glb());
+  expect_tetrahedron(read_gltf(folder / "a.glb"));
+  write_file(folder / "a.bin", buffer());
+  write_file(folder / "a.gltf", document(R"("uri":"a.bin",)"));
+  expect_tetrahedron(read_gltf(folder / "a.gltf"));
+}
+
+TEST(Gltf, RefusesPromisesThatDoNotHold) {
+  const TemporaryFolder folder;
+  write_file(folder / "a.bin", buffer());
+  const auto said = [&](const std::string& from, const std::string& to) {
+    std::string text = document(R"("uri":"a.bin",)");
+    text.replace(text.find(from), from.size(), to);
+    write_file(folder / "a.gltf", text);
+    return error_of([&] { read_gltf(folder / "a.gltf"); });
+  };
+  EXPECT_NE(said(R"("byteLength":168)", R"("byteLength":169)").find("a buffer of 169 bytes, there are 168"),
+            std::string::npos);
+  EXPECT_NE(said(R"("byteLength":24)", R"("byteLength":25)").find("ends behind its buffer"), std::string::npos);
+  EXPECT_NE(said(R"("count":12,"type":"SCALAR")", R"("count":4000000000,"type":"SCALAR")").find("4000000000 entries"),
+            std::string::npos);
+  EXPECT_NE(said(R"("indices":1)", R"("indices":7)").find("indices is 7, there are 2"), std::string::npos);
+  EXPECT_NE(said(R"("children":[1])", R"("children":[0])").find("ancestor"), std::string::npos);
+  EXPECT_NE(said("a.bin", "b.bin").find("'b.bin' cannot be read"), std::string::npos);
+  EXPECT_NE(said("{\"asset\"", "[\"asset\"").find("not valid JSON"), std::string::npos);
+}
+
+TEST(Gltf, ReadsOrRefusesAnyDamage) {
+  const TemporaryFolder folder;
+  const std::string good = glb();
+  const auto read = [&](const std::string& bytes) {
+    write_file(folder / "d.glb", bytes);
+    read_gltf(folder / "d.glb");
+  };
+  for (int flip = 0; flip < 1000; ++flip) {
+    RandomStream random(10, 0, static_cast<std::uint64_t>(flip));
+    std::string bytes = good;
+    bytes[random.bits32() % bytes.size()] = static_cast<char>(random.bits32());
+    try {
+      read(bytes);
+    } catch (const Error&) {
+    }
+  }
+  for (std::size_t size = 0; size < good.size(); size += 13) error_of([&] { read(good.substr(0, size)); });
+}
+
+}  // namespace
+}  // namespace scan
