@@ -15,25 +15,35 @@ struct Hit {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;  // geometric, unit, outward of the object
   int object = -1;
+  std::uint32_t triangle = 0;  // of a mesh
 };
 
-// Built once per scene, used from many threads. Embree runs in ROBUST mode on floats relative to the
-// scene's own origin; hits are computed again in double, so a scene far from the origin keeps its
-// accuracy. Analytic shapes are user geometry: spheres and planes by closed form, others by stepping
-// along their distance field.
+// The same hit as seen along `direction`: its normal turned against the ray. Shells reflect on both
+// sides, and a scanner sees the side that it looks at.
+Hit facing(Hit hit, const Eigen::Vector3d& direction);
+
+// Built once per scene, used from many threads. Embree's tree (ROBUST, floats relative to the
+// scene's own origin, widened boxes) only proposes triangles and shapes; each is intersected in
+// double precision, so a scene far from the origin keeps its accuracy. Triangles are tested without
+// leaks at shared edges and vertices; triangles without area are never hit. Analytic shapes: see
+// shape_rays.h.
 class RayCaster {
  public:
+  // Checks the scene first: throws scan::Error (input).
   explicit RayCaster(const Scene& scene);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
 
-  // First hit with distance in (min_m, max_m); `direction` unit, world frame. Among hits at the same
-  // distance the lowest object wins.
+  // First hit with distance in (min_m, max_m); `direction` unit, world frame. Among hits at the
+  // same distance (to rounding) the lowest object wins, then the lowest triangle. A ray that starts
+  // on a surface does not hit it at distance zero; one that starts inside an object hits it from
+  // inside, with the outward normal along the ray. An origin or direction that is not finite hits
+  // nothing.
   std::optional<Hit> closest(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                              double min_m = 0, double max_m = 1e30) const;
 
   // True if something stands between `hit` (on a surface with that normal) and `light`; the surface
-  // itself does not count. A light behind the surface is occluded.
+  // itself does not count. A light behind or in the plane of the surface is occluded.
   bool occluded(const Hit& hit, const Eigen::Vector3d& light) const;
 
   const Scene& scene() const;

@@ -3,7 +3,9 @@
 // What stands before the scanner: shapes and meshes with their materials, and light.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -54,10 +56,12 @@ TrueSurface true_surface(const Scene& scene);  // in the world frame
 // Albedo at a point of an object (world frame), 0 to 1.
 double albedo_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world);
 
-// Our own models, metres: a bracket with a bore, a fillet and a thin wall (about 80 mm), and an organic
-// form of blended spheres and a ring (about 100 mm). `catalogue_shape` finds them by the words
-// "bracket" and "bud"; none for another word.
+// Our own models, metres. bracket: a machined angle of 80 x 50 x 45 mm with a bore (radius 9 mm), a
+// fillet, a thin wall (1.5 mm) and sharp edges; genus 1 (the bore). bud: an organic form of blended
+// spheres and a ring, about 100 mm; genus 1 (the ring is its handle). Both are one connected solid.
+// `catalogue_shape` finds them by the words "bracket" and "bud"; none for another word.
 Shape bracket();
 Shape bud();
+std::optional<Shape> catalogue_shape(std::string_view word);
 
 }  // namespace scan::synth

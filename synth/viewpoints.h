@@ -18,7 +18,7 @@ struct Turntable {  // full turn at one height: equal angles
   double height_m = 0;
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
 };
-struct Ring {  // an arc of a turn
+struct Ring {  // an arc of a turn with both its ends, or a full turn that does not repeat its start
   int count = 8;
   double radius_m = 0.4;
   double height_m = 0;
@@ -37,9 +37,9 @@ struct PoseList {
 };
 using Layout = std::variant<Turntable, Ring, Dome, PoseList>;
 
-// Error of the guesses that estimators get: rotation about a random axis, translation in a random
-// direction; normal, these are the standard deviations of angle and distance. The first scan's guess is
-// exact: its frame is the world.
+// Error of the guesses that estimators get: rotation about a random axis through the scanner,
+// translation in a random direction; normal, these are the standard deviations of angle and
+// distance. The first scan's guess is exact: its frame is the world.
 struct PoseNoise {
   double rotation_rad = 0;
   double translation_m = 0;
@@ -50,6 +50,7 @@ struct Viewpoints {
   PoseNoise pose_noise;
 };
 
+// Throws scan::Error (input) naming field, value and limit.
 void check(const Viewpoints& viewpoints);
 std::vector<Pose> true_poses(const Viewpoints& viewpoints);  // world_from_scanner
 std::vector<Pose> guessed_poses(const Viewpoints& viewpoints, std::uint64_t seed);

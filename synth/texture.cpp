@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "synth/texture.h"
+
+#include <cmath>
+
+#include "libscan/core/error.h"
+#include "libscan/core/random.h"
+
+namespace scan::synth {
+namespace {
+
+void check_range(const std::string& field, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  throw Error(Trouble::input, field + " is " + std::to_string(value) + ", must be from " +
+                                  std::to_string(low) + " to " + std::to_string(high));
+}
+
+void check_period(const std::string& place, double period_m) {
+  if (std::isfinite(period_m) && period_m > 0) return;
+  throw Error(Trouble::input,
+              place + "/period_m is " + std::to_string(period_m) + ", must be positive");
+}
+
+void check_texture(const PlainTexture&, const std::string&) {}
+void check_texture(const CheckerTexture& checker, const std::string& place) {
+  check_period(place, checker.period_m);
+  check_range(place + "/contrast", checker.contrast, 0, 1);
+}
+void check_texture(const NoiseTexture& noise, const std::string& place) {
+  check_period(place, noise.period_m);
+  check_range(place + "/octaves", noise.octaves, 1, 16);
+  check_range(place + "/contrast", noise.contrast, 0, 1);
+}
+
+double lattice_value(std::int64_t x, std::int64_t y, std::int64_t z) {
+  const auto word = [](std::int64_t v) { return static_cast<std::uint32_t>(v); };
+  return philox4x32({word(x), word(y), word(z), 0}, {0x6c696273u, 0x63616e21u})[0] * 0x1p-32;
+}
+
+double blend(double t) {
+  return t * t * t * (t * (6 * t - 15) + 10);
+}
+
+double factor(const PlainTexture&, const Eigen::Vector3d&) {
+  return 1;
+}
+
+double factor(const CheckerTexture& checker, const Eigen::Vector3d& x) {
+  const Eigen::Vector3d cell =
+      (x * (2 / checker.period_m)).array().floor();  // dark and light: a period
+  return std::fmod(std::abs(cell.sum()), 2) == 0 ? 1 : 1 - checker.contrast;
+}
+
+double factor(const NoiseTexture& noise, const Eigen::Vector3d& x) {
+  double sum = 0, weights = 0, weight = 1;
+  Eigen::Vector3d place = x / noise.period_m;
+  for (int octave = 0; octave < noise.octaves; ++octave) {
+    sum += weight * value_noise(place);
+    weights += weight;
+    weight /= 2;
+    // doubled, and moved off the coarser lattice, whose corners would all coincide at the origin
+    place = 2 * place + Eigen::Vector3d(17.31, 5.77, 29.13);
+  }
+  return 1 - noise.contrast * (1 - sum / weights);
+}
+
+}  // namespace
+
+void check(const Texture& texture, const std::string& place) {
+  std::visit([&](const auto& t) { check_texture(t, place); }, texture);
+}
+
+double texture_factor(const Texture& texture, const Eigen::Vector3d& x_in_object) {
+  return std::visit([&](const auto& t) { return factor(t, x_in_object); }, texture);
+}
+
+double value_noise(const Eigen::Vector3d& x) {
+  const Eigen::Vector3d cell = x.array().floor();
+  const Eigen::Vector3d weight = (x - cell).unaryExpr(&blend);
+  double value = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d step(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+    const Eigen::Vector3d at = cell + step;
+    const double share =
+        (step.array() * weight.array() + (1 - step.array()) * (1 - weight.array())).prod();
+    value +=
+        share * lattice_value(static_cast<std::int64_t>(at.x()), static_cast<std::int64_t>(at.y()),
+                              static_cast<std::int64_t>(at.z()));
+  }
+  return value;
+}
+
+}  // namespace scan::synth
