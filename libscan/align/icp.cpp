@@ -59,7 +59,8 @@ class Iteration {
   };
 
   void tighten();
-  State examine();
+  State examine(const Gates& gates);
+  State examine_and_widen();
   NormalEquations normal_equations(const State& state) const;
   Vector6 step(const State& state) const;
   Vector6 rigid_step(const State& state) const;
@@ -85,9 +86,9 @@ void Iteration::tighten() {
   gates_settled_ = gates_.distance_m >= 0.99 * before.distance_m;
 }
 
-Iteration::State Iteration::examine() {
+Iteration::State Iteration::examine(const Gates& gates) {
   State state;
-  state.kept = finder_.kept(matches_, gates_);
+  state.kept = finder_.kept(matches_, gates);
   if (state.kept.size() < least_pairs) return state;
   std::vector<std::uint32_t> used;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -107,6 +108,18 @@ Iteration::State Iteration::examine() {
                               : std::span<const Eigen::Vector3d>();
   state.weak = weak_motions(used, target_.points, normals, finder_.surface(), state.frame);
   return state;
+}
+
+// The few points that alone fix a motion have the worst residuals until it is found: where trimming
+// would leave more motions weak than there are, it waits.
+Iteration::State Iteration::examine_and_widen() {
+  State state = examine(gates_);
+  if (state.weak.cols() == 0) return state;
+  const Gates untrimmed{gates_.distance_m, gates_.distance_m};  // no residual exceeds the distance
+  State all = examine(untrimmed);
+  if (all.weak.cols() >= state.weak.cols()) return state;
+  gates_ = untrimmed;
+  return all;
 }
 
 NormalEquations Iteration::normal_equations(const State& state) const {
@@ -145,8 +158,8 @@ Vector6 Iteration::step(const State& state) const {
 }
 
 bool Iteration::small(const Vector6& twist, const DataFrame& frame) const {
-  return twist.head<3>().norm() < options_.stop_rotation_rad &&
-         twist.tail<3>().norm() * frame.size_m <
+  return twist.head<3>().norm() <= options_.stop_rotation_rad &&
+         twist.tail<3>().norm() * frame.size_m <=
              options_.stop_translation_fraction * 2 * source_.radius_m;
 }
 
@@ -197,7 +210,7 @@ void Iteration::report(const State& state, IcpResult& result) const {
 }
 
 void Iteration::finish(bool at_limit, IcpResult& result) {
-  const State state = examine();
+  const State state = examine_and_widen();
   if (state.kept.size() < least_pairs) {
     result.stop = Stop::no_correspondences;
     return;
@@ -214,7 +227,7 @@ void Iteration::run(const Pose& guess, IcpResult& result) {
   matches_ = finder_.find(pose_, given > 0 ? given : unlimited_m);
   for (result.iterations = 0;;) {
     tighten();
-    const State state = examine();
+    const State state = examine_and_widen();
     if (state.kept.size() < least_pairs) {
       result.stop = Stop::no_correspondences;
       return;
