@@ -4,30 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-
-#include "libscan/core/error.h"
 
 namespace scan::synth {
-namespace {
-
-void require(bool fulfilled, const char* field, double value, const char* limit) {
-  if (fulfilled) return;
-  throw Error(Trouble::input,
-              "sensor/" + std::string(field) + " is " + std::to_string(value) + ", " + limit);
-}
-
-}  // namespace
-
-void check(const Sensor& s) {
-  require(std::isfinite(s.gain_e_per_dn) && s.gain_e_per_dn > 0, "gain_e_per_dn", s.gain_e_per_dn,
-          "must be positive");
-  require(std::isfinite(s.offset_dn), "offset_dn", s.offset_dn, "must be finite");
-  require(std::isfinite(s.read_noise_e) && s.read_noise_e >= 0, "read_noise_e", s.read_noise_e,
-          "must not be negative");
-  require(s.full_well_e > 0, "full_well_e", s.full_well_e, "must be positive");
-  require(s.bits >= 1 && s.bits <= 16, "bits", s.bits, "must be from 1 to 16");
-}
 
 Sensor delivered_sensor(const Sensor& sensor, const DetectorEffects& effects) {
   if (effects.quantisation) return sensor;

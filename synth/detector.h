@@ -17,16 +17,14 @@ struct DetectorEffects {
   bool quantisation = true;  // off: see delivered_sensor
 };
 
-// Throws scan::Error (input) naming field, value and limit.
-void check(const Sensor& sensor);
-
 // The sensor whose numbers read_pixel delivers, to be handed on in the frames' calibration. Without
-// quantisation the steps are 64 times finer (a pixel stays a whole number), or as much as 16 bits hold.
+// quantisation the steps are 64 times finer (a pixel stays a whole number), or as much as 16 bits
+// hold.
 Sensor delivered_sensor(const Sensor& sensor, const DetectorEffects& effects);
 
 // One reading: Poisson electrons, saturation at the full well, Gaussian read noise, gain, offset,
-// rounding, clipping (EMVA 1288's linear model). `sensor` is the nominal one. Draws from `random` only
-// what the effects need, and no shot noise of zero electrons.
+// rounding, clipping (EMVA 1288's linear model). `sensor` is the nominal one. Draws from `random`
+// only what the effects need, and no shot noise of zero electrons.
 std::uint16_t read_pixel(const Sensor& sensor, const DetectorEffects& effects, double expected_e,
                          RandomStream& random);
 

@@ -39,7 +39,9 @@ struct Query {
   }
 };
 
-const Solid& solid_of(const void* user_data) { return *static_cast<const Solid*>(user_data); }
+const Solid& solid_of(const void* user_data) {
+  return *static_cast<const Solid*>(user_data);
+}
 
 void bounds_callback(const RTCBoundsFunctionArguments* call) {
   const Solid& solid = solid_of(call->geometryUserPtr);
@@ -98,8 +100,7 @@ struct RayCaster::Device {
   std::optional<RTCRay> enter_tree(Query& query) const;
 };
 
-RayCaster::Device::Device(const Scene& described)
-    : scene(described), origin(scene_origin(scene)) {
+RayCaster::Device::Device(const Scene& described) : scene(described), origin(scene_origin(scene)) {
   for (int i = 0; i < static_cast<int>(scene.objects.size()); ++i) {
     Solid solid = make_solid(scene, i, origin);
     size_m.push_back(solid.size_m);
@@ -108,8 +109,8 @@ RayCaster::Device::Device(const Scene& described)
     (is_finite(solid.bounds) ? in_tree : unbounded).push_back(std::move(solid));
   }
   if (in_tree.empty()) return;
-  // The float ray starts where the double ray enters the bounds, so start, direction and box are each
-  // off by float rounding of the bounds' size at most; 16 covers their sum.
+  // The float ray starts where the double ray enters the bounds, so start, direction and box are
+  // each off by float rounding of the bounds' size at most; 16 covers their sum.
   const double margin_m = 16 * float_epsilon * bounds.diagonal().norm();
   for (Solid& solid : in_tree) solid.margin_m = margin_m;
   bounds = Bounds(bounds.min() - Eigen::Vector3d::Constant(margin_m),
@@ -158,7 +159,8 @@ std::optional<RTCRay> RayCaster::Device::enter_tree(Query& query) const {
   const Eigen::Vector3f start =
       (query.ray.origin + span->enter_m * query.ray.direction).cast<float>();
   const Eigen::Vector3f direction = query.ray.direction.cast<float>();
-  const double length = span->leave_m - span->enter_m + bounds.diagonal().norm() * float_epsilon * 16;
+  const double length =
+      span->leave_m - span->enter_m + bounds.diagonal().norm() * float_epsilon * 16;
   RTCRay ray{};
   ray.org_x = start.x();
   ray.org_y = start.y();
@@ -207,7 +209,9 @@ RayCaster::RayCaster(const Scene& scene) {
 RayCaster::~RayCaster() = default;
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 
-const Scene& RayCaster::scene() const { return device_->scene; }
+const Scene& RayCaster::scene() const {
+  return device_->scene;
+}
 
 std::optional<Hit> RayCaster::closest(const Eigen::Vector3d& origin,
                                       const Eigen::Vector3d& direction, double min_m,

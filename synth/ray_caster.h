@@ -21,10 +21,11 @@ struct Hit {
 // sides, and a scanner sees the side that it looks at.
 Hit facing(Hit hit, const Eigen::Vector3d& direction);
 
-// Built once per scene, used from many threads. Embree's tree (ROBUST, floats relative to the scene's
-// own origin, widened boxes) only proposes triangles and shapes; each is intersected in double
-// precision, so a scene far from the origin keeps its accuracy. Triangles are tested without leaks at
-// shared edges and vertices; triangles without area are never hit. Analytic shapes: see shape_rays.h.
+// Built once per scene, used from many threads. Embree's tree (ROBUST, floats relative to the
+// scene's own origin, widened boxes) only proposes triangles and shapes; each is intersected in
+// double precision, so a scene far from the origin keeps its accuracy. Triangles are tested without
+// leaks at shared edges and vertices; triangles without area are never hit. Analytic shapes: see
+// shape_rays.h.
 class RayCaster {
  public:
   // Checks the scene first: throws scan::Error (input).
@@ -32,10 +33,11 @@ class RayCaster {
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
 
-  // First hit with distance in (min_m, max_m); `direction` unit, world frame. Among hits at the same
-  // distance (to rounding) the lowest object wins, then the lowest triangle. A ray that starts on a
-  // surface does not hit it at distance zero; one that starts inside an object hits it from inside,
-  // with the outward normal along the ray. An origin or direction that is not finite hits nothing.
+  // First hit with distance in (min_m, max_m); `direction` unit, world frame. Among hits at the
+  // same distance (to rounding) the lowest object wins, then the lowest triangle. A ray that starts
+  // on a surface does not hit it at distance zero; one that starts inside an object hits it from
+  // inside, with the outward normal along the ray. An origin or direction that is not finite hits
+  // nothing.
   std::optional<Hit> closest(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                              double min_m = 0, double max_m = 1e30) const;
 

@@ -8,7 +8,9 @@
 namespace scan::synth {
 namespace {
 
-[[noreturn]] void refuse(const std::string& message) { throw Error(Trouble::input, message); }
+[[noreturn]] void refuse(const std::string& message) {
+  throw Error(Trouble::input, message);
+}
 
 std::string name_of(const char* kind, const std::string& name, std::size_t index) {
   return "scene/" + std::string(kind) + "/" + (name.empty() ? std::to_string(index) : name);
@@ -67,9 +69,8 @@ TrueSurface true_surface(const Scene& scene) {
 double albedo_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world) {
   const Object& seen = scene.objects[object];
   const Material& material = scene.materials[seen.material];
-  const Eigen::Vector3d x_in_object =
-      seen.world_from_object.linear().transpose() *
-      (x_in_world - seen.world_from_object.translation());
+  const Eigen::Vector3d x_in_object = seen.world_from_object.linear().transpose() *
+                                      (x_in_world - seen.world_from_object.translation());
   return material.albedo * texture_factor(material.texture, x_in_object);
 }
 

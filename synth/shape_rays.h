@@ -23,10 +23,10 @@ struct ShapeHit {
   Eigen::Vector3d normal;  // unit, out of the solid
 };
 
-// First crossing of the shape's surface, from outside or from inside. Plane, sphere, cylinder and box
-// without rounding by closed form, the others by stepping along the distance field (Hart 1996,
-// "Sphere tracing") and refining the bracketed root to rounding. A crossing nearer to the origin than
-// the rounding of its coordinates is the surface that the ray starts on, and no hit.
+// First crossing of the shape's surface, from outside or from inside. Plane, sphere, cylinder and
+// box without rounding by closed form, the others by stepping along the distance field (Hart 1996,
+// "Sphere tracing") and refining the bracketed root to rounding. A crossing nearer to the origin
+// than the rounding of its coordinates is the surface that the ray starts on, and no hit.
 std::optional<ShapeHit> intersect(const Shape& shape, const Ray& ray);
 std::optional<ShapeHit> intersect(const PlacedShape& placed, const Ray& ray);
 

@@ -37,7 +37,9 @@ void take_mesh(const Mesh& mesh, const Pose& scene_from_object, Solid& solid) {
 
 }  // namespace
 
-bool is_finite(const Bounds& box) { return box.min().allFinite() && box.max().allFinite(); }
+bool is_finite(const Bounds& box) {
+  return box.min().allFinite() && box.max().allFinite();
+}
 
 Eigen::Vector3d scene_origin(const Scene& scene) {
   Bounds all;

@@ -62,8 +62,8 @@ std::optional<Bracket> dip_between(const Profile& profile, Profile::Sample falli
   }
 }
 
-// Steps by the field, which never passes the surface, but at least by `stride_m`; what a stride could
-// step over has a minimum inside it.
+// Steps by the field, which never passes the surface, but at least by `stride_m`; what a stride
+// could step over has a minimum inside it.
 std::optional<Bracket> march(const Profile& profile, const Interval& span, double stride_m) {
   Profile::Sample here = profile(span.enter_m);
   while (here.t < span.leave_m) {
@@ -79,7 +79,8 @@ std::optional<Bracket> march(const Profile& profile, const Interval& span, doubl
   return std::nullopt;
 }
 
-// Newton's steps kept inside the bracket by bisection, until the bracket is as narrow as doubles go.
+// Newton's steps kept inside the bracket by bisection, until the bracket is as narrow as doubles
+// go.
 Profile::Sample refine(const Profile& profile, Bracket bracket) {
   while (true) {
     auto& [before, after] = bracket;

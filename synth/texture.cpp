@@ -18,8 +18,8 @@ void check_range(const std::string& field, double value, double low, double high
 
 void check_period(const std::string& place, double period_m) {
   if (std::isfinite(period_m) && period_m > 0) return;
-  throw Error(Trouble::input, place + "/period_m is " + std::to_string(period_m) +
-                                  ", must be positive");
+  throw Error(Trouble::input,
+              place + "/period_m is " + std::to_string(period_m) + ", must be positive");
 }
 
 void check_texture(const PlainTexture&, const std::string&) {}
@@ -38,12 +38,17 @@ double lattice_value(std::int64_t x, std::int64_t y, std::int64_t z) {
   return philox4x32({word(x), word(y), word(z), 0}, {0x6c696273u, 0x63616e21u})[0] * 0x1p-32;
 }
 
-double blend(double t) { return t * t * t * (t * (6 * t - 15) + 10); }
+double blend(double t) {
+  return t * t * t * (t * (6 * t - 15) + 10);
+}
 
-double factor(const PlainTexture&, const Eigen::Vector3d&) { return 1; }
+double factor(const PlainTexture&, const Eigen::Vector3d&) {
+  return 1;
+}
 
 double factor(const CheckerTexture& checker, const Eigen::Vector3d& x) {
-  const Eigen::Vector3d cell = (x * (2 / checker.period_m)).array().floor();  // dark and light: a period
+  const Eigen::Vector3d cell =
+      (x * (2 / checker.period_m)).array().floor();  // dark and light: a period
   return std::fmod(std::abs(cell.sum()), 2) == 0 ? 1 : 1 - checker.contrast;
 }
 
@@ -77,11 +82,11 @@ double value_noise(const Eigen::Vector3d& x) {
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d step(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
     const Eigen::Vector3d at = cell + step;
-    const double share = (step.array() * weight.array() +
-                          (1 - step.array()) * (1 - weight.array())).prod();
-    value += share * lattice_value(static_cast<std::int64_t>(at.x()),
-                                   static_cast<std::int64_t>(at.y()),
-                                   static_cast<std::int64_t>(at.z()));
+    const double share =
+        (step.array() * weight.array() + (1 - step.array()) * (1 - weight.array())).prod();
+    value +=
+        share * lattice_value(static_cast<std::int64_t>(at.x()), static_cast<std::int64_t>(at.y()),
+                              static_cast<std::int64_t>(at.z()));
   }
   return value;
 }

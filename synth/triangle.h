@@ -19,8 +19,8 @@ struct ShearedRay {
 ShearedRay sheared(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
 
 // Distance along the unit direction to the triangle abc, of either sign; none if the line passes it
-// by or the triangle is seen edge-on. Points on an edge belong to both of its triangles: the test of
-// a shared edge gives the same numbers with opposite signs.
+// by or the triangle is seen edge-on. Points on an edge belong to both of its triangles: the test
+// of a shared edge gives the same numbers with opposite signs.
 std::optional<double> line_distance(const ShearedRay& ray, const Eigen::Vector3d& a,
                                     const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 

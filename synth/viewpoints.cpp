@@ -16,7 +16,8 @@ constexpr double full_turn_rad = 2 * std::numbers::pi;
 
 void require(bool fulfilled, const std::string& field, double value, const char* limit) {
   if (fulfilled) return;
-  throw Error(Trouble::input, "viewpoints/" + field + " is " + std::to_string(value) + ", " + limit);
+  throw Error(Trouble::input,
+              "viewpoints/" + field + " is " + std::to_string(value) + ", " + limit);
 }
 
 void check_circle(int count, double radius_m, const Eigen::Vector3d& centre_m) {
@@ -57,9 +58,8 @@ void check_layout(const PoseList& list) {
 }
 
 Pose on_circle(const Eigen::Vector3d& centre, double radius_m, double height_m, double angle_rad) {
-  const Eigen::Vector3d eye =
-      centre + Eigen::Vector3d(radius_m * std::cos(angle_rad), radius_m * std::sin(angle_rad),
-                               height_m);
+  const Eigen::Vector3d eye = centre + Eigen::Vector3d(radius_m * std::cos(angle_rad),
+                                                       radius_m * std::sin(angle_rad), height_m);
   return look_at(eye, centre, Eigen::Vector3d::UnitZ());
 }
 
@@ -86,13 +86,15 @@ std::vector<Pose> poses_of(const Dome& dome) {
   for (int i = 0; i < dome.count; ++i) {
     const double z = 1 - height * (i + 0.5) / dome.count;
     const double radius = std::sqrt(1 - z * z);
-    poses.push_back(on_circle(dome.centre_m, dome.radius_m * radius, dome.radius_m * z,
-                              golden_rad * i));
+    poses.push_back(
+        on_circle(dome.centre_m, dome.radius_m * radius, dome.radius_m * z, golden_rad * i));
   }
   return poses;
 }
 
-std::vector<Pose> poses_of(const PoseList& list) { return list.world_from_scanner; }
+std::vector<Pose> poses_of(const PoseList& list) {
+  return list.world_from_scanner;
+}
 
 Eigen::Vector3d random_direction(RandomStream& random) {
   const double x = random.normal(), y = random.normal(), z = random.normal();

@@ -38,8 +38,8 @@ struct PoseList {
 using Layout = std::variant<Turntable, Ring, Dome, PoseList>;
 
 // Error of the guesses that estimators get: rotation about a random axis through the scanner,
-// translation in a random direction; normal, these are the standard deviations of angle and distance. The first scan's guess is
-// exact: its frame is the world.
+// translation in a random direction; normal, these are the standard deviations of angle and
+// distance. The first scan's guess is exact: its frame is the world.
 struct PoseNoise {
   double rotation_rad = 0;
   double translation_m = 0;

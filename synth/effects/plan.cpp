@@ -36,22 +36,24 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 // "shot-noise" and "shot_noise" name "shot noise".
 std::string known_name(std::string name) {
-  std::replace_if(name.begin(), name.end(), [](char c) { return c == '-' || c == '_'; }, ' ');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '-' || c == '_'; }, ' ');
   if (std::count(effect_names.begin(), effect_names.end(), name) > 0) return name;
-  const auto nearest = *std::min_element(
-      effect_names.begin(), effect_names.end(), [&](std::string_view a, std::string_view b) {
-        return edit_distance(name, a) < edit_distance(name, b);
-      });
-  throw Error(Trouble::usage,
-              "effects: '" + name + "' is unknown, not one of: shot noise, read noise, quantisation",
-              "did you mean '" + std::string(nearest) + "'?");
+  const auto nearest = *std::min_element(effect_names.begin(), effect_names.end(),
+                                         [&](std::string_view a, std::string_view b) {
+                                           return edit_distance(name, a) < edit_distance(name, b);
+                                         });
+  throw Error(
+      Trouble::usage,
+      "effects: '" + name + "' is unknown, not one of: shot noise, read noise, quantisation",
+      "did you mean '" + std::string(nearest) + "'?");
 }
 
-// Range error of one effect if it is left out: three sigma of the noises, and what rounding by half a
-// step in every reading can do at most.
+// Range error of one effect if it is left out: three sigma of the noises, and what rounding by half
+// a step in every reading can do at most.
 std::array<double, 3> bounds_at(const Sensitivity& point) {
   return {3 * point.shot_m, 3 * point.sensor.read_noise_e * point.per_electron_m,
-          point.sensor.gain_e_per_dn / 2 * point.per_step_m};
+          point.sensor.gain_e_per_dn / 2 * point.worst_per_electron_m};
 }
 
 // The scanner's own sigma with all effects; rounding is uniform, of variance step^2 / 12.
@@ -78,7 +80,8 @@ Weight weigh(const std::vector<Sensitivity>& points, std::size_t effect) {
 
 std::string why(const EffectChoice& choice, const Weight& weight, bool on) {
   char size[160];
-  std::snprintf(size, sizeof size, "it moves a range by at most %.3g mm, %.3g %% of the scanner's own sigma",
+  std::snprintf(size, sizeof size,
+                "it moves a range by at most %.3g mm, %.3g %% of the scanner's own sigma",
                 weight.bound_m * 1e3, weight.share * 100);
   const std::string bound = size;
   switch (choice.kind) {

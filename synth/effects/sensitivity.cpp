@@ -14,13 +14,14 @@ namespace {
 using std::numbers::pi;
 constexpr double dark_albedo = 0.1;
 
-// Place of a sampled Gaussian peak of width s (samples) and height A (electrons), found by least
-// squares; each error is in samples (Cramer-Rao bounds, e.g. Forbes 2006, with sum A'^2 = A^2 sqrt(pi) / 2s
-// and sum |A'| = 2A for the slope A' of the peak).
+// Place of a sampled Gaussian peak of height A (electrons) and width s (samples), found by least
+// squares with its slope A'; errors in samples. White noise v per sample gives the variance v / sum
+// A'^2 (the Cramer-Rao bound), with sum A'^2 = sqrt(pi) A^2 / (2 s) and sum |A'| = 2 A.
 struct PeakError {
   double shot;          // s / sqrt(total electrons)
   double per_electron;  // sqrt(2 s / sqrt(pi)) / A
-  double per_step;      // 4 s / (sqrt(pi) A): every reading wrong by one electron the worst way
+  double
+      worst_per_electron;  // 4 s / (sqrt(pi) A): every reading wrong by one electron the worst way
 };
 
 PeakError peak_error(double width, double height_e, double background_e) {
@@ -32,22 +33,24 @@ PeakError peak_error(double width, double height_e, double background_e) {
 
 Sensitivity scaled(const PeakError& error, double m_per_sample, const Sensor& sensor) {
   return {error.shot * m_per_sample, error.per_electron * m_per_sample,
-          error.per_step * m_per_sample, sensor};
+          error.worst_per_electron * m_per_sample, sensor};
 }
 
-double visible(double electrons) { return std::max(electrons, 1.0); }
+double visible(double electrons) {
+  return std::max(electrons, 1.0);
+}
 
-// At the focus; dz/du = z^2 / (baseline f) there, by the derivative of plane and ray's intersection.
+// At the focus; dz/du = z^2 / (baseline f) there, by the derivative of plane and ray's
+// intersection.
 std::vector<Sensitivity> at_points(const LaserLine& s) {
   const double z = s.baseline_m / std::tan(s.triangulation_rad);
   const double m_per_px = z * z / (s.baseline_m * s.camera.fx_px);
-  const double stripe_px =
-      s.beam_radius_m / 2 / std::cos(s.triangulation_rad) * s.camera.fx_px / z;
+  const double stripe_px = s.beam_radius_m / 2 / std::cos(s.triangulation_rad) * s.camera.fx_px / z;
   const double width_px = std::sqrt(stripe_px * stripe_px + 1.0 / 12);  // and the pixel's own box
   std::vector<Sensitivity> points;
   for (const double albedo : {1.0, dark_albedo})
-    points.push_back(scaled(peak_error(width_px, visible(albedo * s.peak_electrons), 0), m_per_px,
-                            s.sensor));
+    points.push_back(
+        scaled(peak_error(width_px, visible(albedo * s.peak_electrons), 0), m_per_px, s.sensor));
   return points;
 }
 
@@ -67,7 +70,7 @@ std::vector<Sensitivity> at_points(const StereoPair& s) {
   return points;
 }
 
-// Four taps: var(phi) = var(tap) / (2 A^2) (Lange 2000, eq. 4.10 f.); taps off by one electron each move
+// Four taps: var(phi) = var(tap) / (2 A^2) (Lange 2000); taps off by one electron each move
 // (C0 - C2, C3 - C1) of length 2A by sqrt(8) at most.
 std::vector<Sensitivity> at_points(const PhaseCamera& s) {
   const double frequency = *std::max_element(s.frequencies_hz.begin(), s.frequencies_hz.end());

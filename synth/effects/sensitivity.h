@@ -12,14 +12,14 @@ namespace scan::synth {
 
 // At one working point of a scanner.
 struct Sensitivity {
-  double shot_m = 0;      // 1 sigma of range by shot noise
-  double per_electron_m = 0;  // 1 sigma of range per electron of white noise in each reading
-  double per_step_m = 0;  // range error at most per half unit of rounding (electrons) in each reading
+  double shot_m = 0;                // 1 sigma of range by shot noise
+  double per_electron_m = 0;        // 1 sigma of range per electron of white noise in each reading
+  double worst_per_electron_m = 0;  // range error at most if each reading is off by one electron
   Sensor sensor;
 };
 
-// Working points from the strongest to the weakest signal that the scanner is meant for: a white target
-// near and a dark one (albedo 0.1) far.
+// Working points from the strongest to the weakest signal that the scanner is meant for: a white
+// target near and a dark one (albedo 0.1) far.
 std::vector<Sensitivity> sensitivities(const Scanner& scanner);
 
 }  // namespace scan::synth

@@ -2,26 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "synth/scanners/laser_line.h"
 
-#include <cmath>
 #include <numbers>
-#include <string>
 
-#include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
 #include "synth/scanners/laser_line_optics.h"
+#include "synth/scanners/limits.h"
 
 namespace scan::synth {
 namespace {
-
-void require(bool fulfilled, const char* field, double value, const char* limit) {
-  if (fulfilled) return;
-  throw Error(Trouble::input,
-              "laser_line/" + std::string(field) + " is " + std::to_string(value) + ", " + limit);
-}
-
-void require_positive(const char* field, double value) {
-  require(std::isfinite(value) && value > 0, field, value, "must be positive");
-}
 
 // Mean over sub_rays x sub_rays places in the pixel.
 double pixel_electrons(const LaserView& view, int column, int row) {
@@ -59,24 +47,23 @@ Image<std::uint16_t> render_step(const LaserView& view, int step, const RenderAd
 
 void check(const LaserLine& s) {
   check(s.camera);
-  check(s.sensor);
-  require_positive("baseline_m", s.baseline_m);
-  require(s.triangulation_rad > 0 && s.triangulation_rad < std::numbers::pi / 2,
-          "triangulation_rad", s.triangulation_rad, "must be between 0 and pi/2");
-  require(s.fan_rad > 0 && s.fan_rad < std::numbers::pi, "fan_rad", s.fan_rad,
-          "must be between 0 and pi");
-  require_positive("beam_radius_m", s.beam_radius_m);
-  require(std::isfinite(s.peak_electrons) && s.peak_electrons >= 0, "peak_electrons",
-          s.peak_electrons, "must not be negative");
-  require(s.steps >= 1, "steps", s.steps, "must be at least 1");
-  require(std::isfinite(s.step_m), "step_m", s.step_m, "must be finite");
-  require(std::isfinite(s.turn_rad), "turn_rad", s.turn_rad, "must be finite");
-  require_positive("stage_direction/length", s.stage_direction.norm());
-  require_positive("turn_axis/length", s.turn_axis.norm());
-  require(s.turn_centre_m.allFinite(), "turn_centre_m", s.turn_centre_m.sum(), "must be finite");
-  require(s.sub_rays >= 1 && s.sub_rays <= 64, "sub_rays", s.sub_rays, "must be from 1 to 64");
-  require(s.min_range_m >= 0 && s.min_range_m < s.max_range_m, "min_range_m", s.min_range_m,
-          "must not be negative nor reach max_range_m");
+  require_sensor("laser_line", s.sensor, 16);
+  const double right_angle_rad = std::numbers::pi / 2;
+  require_positive("laser_line/baseline_m", s.baseline_m);
+  require_within("laser_line/triangulation_rad", s.triangulation_rad, 1e-6, right_angle_rad - 1e-6);
+  require_within("laser_line/fan_rad", s.fan_rad, 1e-6, 2 * right_angle_rad - 1e-6);
+  require_positive("laser_line/beam_radius_m", s.beam_radius_m);
+  require_within("laser_line/peak_electrons", s.peak_electrons, 0, 1e12);
+  require_within("laser_line/steps", s.steps, 1, 1e6);
+  require_finite("laser_line/step_m", s.step_m);
+  require_finite("laser_line/turn_rad", s.turn_rad);
+  require_positive("laser_line/stage_direction/length", s.stage_direction.norm());
+  require_positive("laser_line/turn_axis/length", s.turn_axis.norm());
+  require_finite("laser_line/turn_centre_m/distance", s.turn_centre_m.norm());
+  require_within("laser_line/sub_rays", s.sub_rays, 1, 64);
+  require_within("laser_line/min_range_m", s.min_range_m, 0, s.max_range_m);
+  require_positive("laser_line/max_range_m", s.max_range_m);
+  require_size("laser_line/images", 1.0 * s.steps * s.camera.width_px * s.camera.height_px);
 }
 
 RawFrames render(const LaserLine& scanner, const RayCaster& caster, const Pose& world_from_scanner,

@@ -13,22 +13,24 @@
 namespace scan::synth {
 
 // The scanner frame is the camera's frame at the middle of the sweep. The laser stands at
-// (baseline_m, 0, 0) of the camera frame; its plane contains the camera's y direction and is turned by
-// triangulation_rad from the optical axis towards it: it crosses the axis at
-// z = baseline / tan(triangulation), the focus.
+// (baseline_m, 0, 0) of the camera frame; its plane contains the camera's y direction and is turned
+// by triangulation_rad from the optical axis towards it: it crosses the axis at z = baseline /
+// tan(triangulation), the focus.
 //
-// The light falls off with the inverse distance from the laser (a fan spreads in one direction) and with
-// the cosine at the surface, which reflects it as Lambert's law says; light and view may be obstructed.
+// The light falls off with the inverse distance from the laser (a fan spreads in one direction) and
+// with the cosine at the surface, which reflects it as Lambert's law says; light and view may be
+// obstructed.
 struct LaserLine {
   Camera camera;
   double baseline_m = 0.1;
   double triangulation_rad = 0.5;
-  double fan_rad = 0.8;           // full opening of the laser's fan
-  double beam_radius_m = 1e-4;    // 1/e^2 radius of the Gaussian across the plane (constant)
-  double peak_electrons = 5000;   // at the stripe's centre on a white target facing the camera, at focus
-  // Either the head moves by `step_m` along `stage_direction` (camera frame), or, with a turn_rad other
-  // than 0, it turns about an axis (a point and a direction in the camera frame) by `turn_rad` per step,
-  // as a turntable does.
+  double fan_rad = 0.8;         // full opening of the laser's fan
+  double beam_radius_m = 1e-4;  // 1/e^2 radius of the Gaussian across the plane (constant)
+  double peak_electrons =
+      5000;  // at the stripe's centre on a white target facing the camera, at focus
+  // Either the head moves by `step_m` along `stage_direction` (camera frame), or, with a turn_rad
+  // other than 0, it turns about an axis (a point and a direction in the camera frame) by
+  // `turn_rad` per step, as a turntable does.
   int steps = 200;
   double step_m = 5e-4;
   Eigen::Vector3d stage_direction = Eigen::Vector3d::UnitX();
@@ -46,9 +48,10 @@ void check(const LaserLine& scanner);
 // StripeImages.
 RawFrames render(const LaserLine& scanner, const RayCaster& caster, const Pose& world_from_scanner,
                  const RenderAddress& address, const DetectorEffects& effects);
-// The true ray of (row, step): where the middle of the light plane meets the surface, lit and seen, in
-// that camera row, that is on the curve of views through the centres of its pixels (with distortion no
-// plane); of several such points the one nearest to the camera. Normals face the laser.
+// The true ray of (row, step): where the middle of the light plane meets the surface, lit and seen,
+// in that camera row, that is on the curve of views through the centres of its pixels (with
+// distortion no plane); of several such points the one nearest to the camera. Normals face the
+// laser.
 std::vector<RayTruth> true_rays(const LaserLine& scanner, const RayCaster& caster,
                                 const Pose& world_from_scanner);
 

@@ -3,9 +3,10 @@
 // Where in the image the stripe can be: the laser's light is followed forwards, so that camera rays
 // need be traced along the stripe only.
 //
-// Every lit point is the first hit of a ray of the sheet. Rays over the fan and the sheet's thickness
-// are shone onto the scene and seen by the camera; where neighbours land far apart, rays between them
-// follow, down to 1/1024 of their gap, so that surfaces lit at a grazing angle are covered up to the limb.
+// Every lit point is the first hit of a ray of the sheet. Rays over the fan and the sheet's
+// thickness are shone onto the scene and seen by the camera; where neighbours land far apart, rays
+// between them follow, down to 1/1024 of their gap, so that surfaces lit at a grazing angle are
+// covered up to the limb.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +18,6 @@ namespace {
 constexpr double near_px = 3;  // neighbours so close need no ray between them
 constexpr int margin_px = 2;
 constexpr int halvings = 10;
-constexpr int sheets = 7;
 
 struct Band {
   const LaserView& view;
@@ -44,12 +44,20 @@ struct Band {
       if (b.is_hit) mark(b.pixel, b.pixel);
       return;
     }
-    const LitPoint middle = view.shine((a.angle_rad + b.angle_rad) / 2,
-                                       (a.from_plane_m + b.from_plane_m) / 2);
+    const LitPoint middle =
+        view.shine((a.angle_rad + b.angle_rad) / 2, (a.from_plane_m + b.from_plane_m) / 2);
     mark_between(a, middle, depth - 1);
     mark_between(middle, b, depth - 1);
   }
 };
+
+// Odd, and so many that neighbours at the focus are at most a pixel apart.
+int sheet_count(const LaserView& view) {
+  const double z = view.scanner.baseline_m / std::tan(view.scanner.triangulation_rad);
+  const double half_width_px =
+      view.sheet.reach_m / view.sheet.normal.x() / z * view.scanner.camera.fx_px;
+  return 1 + 2 * std::clamp(static_cast<int>(std::ceil(half_width_px)), 1, 1000);
+}
 
 }  // namespace
 
@@ -57,8 +65,7 @@ Image<std::uint8_t> lit_band(const LaserView& view) {
   const Camera& camera = view.scanner.camera;
   Band band{view, Image<std::uint8_t>(camera.width_px, camera.height_px)};
   const LaserSheet& sheet = view.sheet;
-  const int steps =
-      std::max(2, static_cast<int>(std::ceil(2 * sheet.half_fan_rad / fan_step_rad(view.scanner))));
+  const int steps = fan_steps(view.scanner, 1), sheets = sheet_count(view);
   std::vector<LitPoint> previous;
   for (int i = 0; i <= steps; ++i) {
     const double angle_rad = sheet.half_fan_rad * (2.0 * i / steps - 1);

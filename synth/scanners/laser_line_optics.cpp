@@ -9,7 +9,8 @@ namespace scan::synth {
 
 LaserSheet laser_sheet(const LaserLine& scanner) {
   const double s = std::sin(scanner.triangulation_rad), c = std::cos(scanner.triangulation_rad);
-  // exp(-2 d^2 / w^2) brings even a steeper and nearer surface than the focus (10 times) below 1e-4 e
+  // exp(-2 d^2 / w^2) brings even a steeper and nearer surface than the focus (10 times) below 1e-4
+  // e
   const double decades = std::log(std::max(10 * scanner.peak_electrons / 1e-4, 10.0));
   return {.origin = {scanner.baseline_m, 0, 0},
           .normal = {c, 0, s},
@@ -28,23 +29,24 @@ std::vector<Pose> scanner_from_camera(const LaserLine& scanner) {
   for (int step = 0; step < scanner.steps; ++step) {
     const double from_middle = step - (scanner.steps - 1) / 2.0;
     if (scanner.turn_rad == 0) {
-      poses.push_back(make_pose(Eigen::Matrix3d::Identity(),
-                                from_middle * scanner.step_m * scanner.stage_direction.normalized()));
+      poses.push_back(
+          make_pose(Eigen::Matrix3d::Identity(),
+                    from_middle * scanner.step_m * scanner.stage_direction.normalized()));
       continue;
     }
     const Eigen::Matrix3d rotation =
         Eigen::AngleAxisd(from_middle * scanner.turn_rad, scanner.turn_axis.normalized())
             .toRotationMatrix();
-    poses.push_back(
-        make_pose(rotation, scanner.turn_centre_m - rotation * scanner.turn_centre_m));
+    poses.push_back(make_pose(rotation, scanner.turn_centre_m - rotation * scanner.turn_centre_m));
   }
   return poses;
 }
 
-double fan_step_rad(const LaserLine& scanner) {
+int fan_steps(const LaserLine& scanner, double step_px) {
   // a point at distance r from the laser is about r cos(triangulation) deep
-  return 0.45 * std::cos(scanner.triangulation_rad) /
-         std::max(scanner.camera.fx_px, scanner.camera.fy_px);
+  const double step_rad = step_px * std::cos(scanner.triangulation_rad) /
+                          std::max(scanner.camera.fx_px, scanner.camera.fy_px);
+  return std::max(2, static_cast<int>(std::ceil(scanner.fan_rad / step_rad)));
 }
 
 LitPoint LaserView::shine(double angle_rad, double from_plane_m) const {

@@ -13,11 +13,11 @@ namespace scan::synth {
 // comes from origin + d normal and stays in the parallel plane.
 struct LaserSheet {
   Eigen::Vector3d origin;
-  Eigen::Vector3d normal;   // unit; normal . x = offset on the plane
+  Eigen::Vector3d normal;  // unit; normal . x = offset on the plane
   double offset_m;
-  Eigen::Vector3d middle;   // unit, of the fan's middle ray
+  Eigen::Vector3d middle;  // unit, of the fan's middle ray
   double half_fan_rad;
-  double reach_m;           // beyond it from the plane there is less than 1e-4 electrons
+  double reach_m;  // beyond it from the plane there is less than 1e-4 electrons
 };
 
 LaserSheet laser_sheet(const LaserLine& scanner);
@@ -30,10 +30,10 @@ std::vector<Pose> scanner_from_camera(const LaserLine& scanner);
 struct LitPoint {
   double angle_rad = 0;  // in the fan
   double from_plane_m = 0;
-  bool is_hit = false;   // the rest means something only then
+  bool is_hit = false;                              // the rest means something only then
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // where the camera would see it
   Eigen::Vector3d x_in_camera = Eigen::Vector3d::Zero();
-  Hit hit = {};          // world; its normal faces the laser
+  Hit hit = {};  // world; its normal faces the laser
 };
 
 // A camera at one of the steps with its sheet and scene.
@@ -50,8 +50,9 @@ struct LaserView {
   double electrons(const Eigen::Vector3d& ray_in_camera) const;
 };
 
-// Angle between neighbouring fan rays: below half a pixel of the image on surfaces across the view.
-double fan_step_rad(const LaserLine& scanner);
+// Number of equal steps over the fan, each at most `step_px` of the image on surfaces across the
+// view.
+int fan_steps(const LaserLine& scanner, double step_px);
 
 // Marks the pixels that can receive light: 1, others 0. See laser_line_band.cpp.
 Image<std::uint8_t> lit_band(const LaserView& view);

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // Where the middle of the laser's plane truly meets the surface, row by row of the camera.
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "libscan/core/parallel.h"
@@ -47,31 +49,51 @@ bool is_seen(const LaserView& view, const LitPoint& point) {
   return !view.caster.occluded(point.hit, view.world_from_camera.translation());
 }
 
-void true_rays_of_step(const LaserView& view, const Pose& scanner_from_camera, RayTruth* rays) {
-  const LaserSheet& sheet = view.sheet;
-  const int rows = view.scanner.camera.height_px;
-  std::vector<double> nearest_m(rows, std::numeric_limits<double>::infinity());
-  const int steps =
-      std::max(2, static_cast<int>(std::ceil(2 * sheet.half_fan_rad / fan_step_rad(view.scanner))));
-  LitPoint previous = view.shine(-sheet.half_fan_rad, 0);
-  for (int i = 1; i <= steps; ++i) {
-    const LitPoint next = view.shine(sheet.half_fan_rad * (2.0 * i / steps - 1), 0);
-    const LitPoint before = std::exchange(previous, next);
-    if (!before.is_hit || !next.is_hit) continue;
-    const double low = std::min(before.pixel.y(), next.pixel.y());
-    const double high = std::max(before.pixel.y(), next.pixel.y());
-    for (int row = static_cast<int>(std::max(0.0, std::ceil(low)));
-         row < rows && row <= high; ++row) {
-      const auto point = on_row(view, before, next, row);
-      if (!point || !is_seen(view, *point)) continue;
-      const double distance_m = point->x_in_camera.norm();
-      if (distance_m >= nearest_m[row]) continue;
-      nearest_m[row] = distance_m;
-      rays[row] = {scanner_from_camera * point->x_in_camera,
-                   scanner_from_camera.linear() * view.world_from_camera.linear().transpose() *
-                       point->hit.normal,
-                   point->hit.object};
+// One step's rays while the fan is followed.
+struct StepTruth {
+  const LaserView& view;
+  Pose scanner_from_camera;
+  std::span<RayTruth> rays;  // one per row
+  std::vector<double> nearest_m =
+      std::vector<double>(rays.size(), std::numeric_limits<double>::infinity());
+
+  void take(int row, const LitPoint& point) {
+    const double distance_m = point.x_in_camera.norm();
+    if (distance_m >= nearest_m[row] || !is_seen(view, point)) return;
+    nearest_m[row] = distance_m;
+    const Eigen::Matrix3d scanner_from_world =
+        scanner_from_camera.linear() * view.world_from_camera.linear().transpose();
+    rays[row] = {scanner_from_camera * point.x_in_camera, scanner_from_world * point.hit.normal,
+                 point.hit.object};
+  }
+
+  // All rows between two fan rays. Where their points are far apart the rays between them follow,
+  // so that a surface is kept up to the limb where the light leaves it.
+  void follow(const LitPoint& a, const LitPoint& b, int depth) {
+    if (!a.is_hit && !b.is_hit) return;
+    const bool near = a.is_hit && b.is_hit && (a.pixel - b.pixel).norm() < 2;
+    if (!near && depth > 0) {
+      const LitPoint middle = view.shine((a.angle_rad + b.angle_rad) / 2, 0);
+      follow(a, middle, depth - 1);
+      follow(middle, b, depth - 1);
+      return;
     }
+    if (!a.is_hit || !b.is_hit) return;
+    const auto [low, high] = std::minmax(a.pixel.y(), b.pixel.y());
+    for (int row = static_cast<int>(std::max(0.0, std::ceil(low)));
+         row < static_cast<int>(rays.size()) && row <= high; ++row)
+      if (const auto point = on_row(view, a, b, row)) take(row, *point);
+  }
+};
+
+void follow_fan(StepTruth& truth) {
+  const double half_rad = truth.view.sheet.half_fan_rad;
+  const int steps = fan_steps(truth.view.scanner, 0.5);
+  LitPoint previous = truth.view.shine(-half_rad, 0);
+  for (int i = 1; i <= steps; ++i) {
+    const LitPoint next = truth.view.shine(half_rad * (2.0 * i / steps - 1), 0);
+    truth.follow(previous, next, 20);
+    previous = next;
   }
 }
 
@@ -87,7 +109,9 @@ std::vector<RayTruth> true_rays(const LaserLine& scanner, const RayCaster& caste
       poses.size(),
       [&](std::size_t step) {
         const LaserView view{scanner, sheet, caster, world_from_scanner * poses[step]};
-        true_rays_of_step(view, poses[step], &rays[step * scanner.camera.height_px]);
+        const auto rows = static_cast<std::size_t>(scanner.camera.height_px);
+        StepTruth truth{view, poses[step], std::span(rays).subspan(step * rows, rows)};
+        follow_fan(truth);
       },
       1);
   return rays;
