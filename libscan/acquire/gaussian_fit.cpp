@@ -69,8 +69,7 @@ std::optional<Location> fit_gaussian(const Samples& samples, const Gaussian& sta
     const double old_sigma = shape.sigma;
     shape.centre += change(0);
     shape.amplitude += change(1);
-    if (width == Width::free)
-      shape.sigma = std::clamp(shape.sigma + change(2), narrowest, widest);
+    if (width == Width::free) shape.sigma = std::clamp(shape.sigma + change(2), narrowest, widest);
     if (!(shape.centre >= samples.first - 1 && shape.centre <= last + 1)) return std::nullopt;
     const bool settled = shrink == 1 && std::abs(change(0)) < 1e-9 * shape.sigma &&
                          std::abs(shape.sigma - old_sigma) < 1e-7 * shape.sigma;

@@ -93,7 +93,8 @@ PulseTime locate_pulse(std::span<const double> waveform_e, double pulse_sigma, c
   const double place = pulse->shape.centre;
   if (place < 2 * pulse_sigma || place > count - 1 - 2 * pulse_sigma)
     return {.miss = reason::border};
-  return {.sample = place, .sigma_samples = pulse->centre_sigma, .height_e = pulse->shape.amplitude};
+  return {
+      .sample = place, .sigma_samples = pulse->centre_sigma, .height_e = pulse->shape.amplitude};
 }
 
 }  // namespace scan::decoding

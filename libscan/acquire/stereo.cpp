@@ -22,8 +22,8 @@ using decoding::RayOutcome;
 
 void require(bool holds, const char* field, double value, const char* limit) {
   if (holds) return;
-  throw Error(Trouble::input, std::string("stereo/") + field + ": " + std::to_string(value) +
-                                  ", must be " + limit);
+  throw Error(Trouble::input,
+              std::string("stereo/") + field + ": " + std::to_string(value) + ", must be " + limit);
 }
 
 void check(const StereoCalibration& c) {
@@ -52,7 +52,8 @@ void check(const ImagePair& pair, const StereoOptions& options) {
                                       std::to_string(c.height_px));
   require(options.block_px >= 1 && options.block_px % 2 == 1 && options.block_px <= 31, "block_px",
           options.block_px, "odd, 1 to 31");
-  require(options.max_left_right_px > 0, "max_left_right_px", options.max_left_right_px, "positive");
+  require(options.max_left_right_px > 0, "max_left_right_px", options.max_left_right_px,
+          "positive");
 }
 
 // Whether the block about a pixel changes along the row by more than rounding does: the variance of
@@ -86,6 +87,19 @@ std::string_view fault(const ImagePair& pair, const StereoOptions& options,
   return reason::inconsistent;
 }
 
+// The matcher's smoothness also finds agreement in noise. The best of a hundred windows of 7 x 7
+// unrelated pixels correlates by about 2.5 / 7.
+void reject_uncorrelated(decoding::RefinedDisparity& refined,
+                         std::map<std::string, std::size_t>& misses) {
+  constexpr float least_correlation = 0.4f;
+  for (std::size_t i = 0; i < refined.correlation.pixels.size(); ++i) {
+    if (!(refined.correlation.pixels[i] < least_correlation)) continue;
+    refined.disparity_px.pixels[i] = std::numeric_limits<float>::quiet_NaN();
+    refined.sigma_px.pixels[i] = std::numeric_limits<float>::quiet_NaN();
+    ++misses[std::string(reason::inconsistent)];
+  }
+}
+
 }  // namespace
 
 DisparityMap match(const ImagePair& pair, const StereoOptions& options) {
@@ -110,6 +124,7 @@ DisparityMap match(const ImagePair& pair, const StereoOptions& options) {
   // What passed the left-right check lies, at three sigma, within its limit.
   decoding::RefinedDisparity refined = decoding::refine(
       pair.left, pair.right, disparity, options.block_px, options.max_left_right_px / 3);
+  reject_uncorrelated(refined, map.misses);
   map.disparity_px = std::move(refined.disparity_px);
   map.sigma_px = std::move(refined.sigma_px);
   if (options.disparity_sigma_px > 0)

@@ -23,7 +23,8 @@ TEST(GaussianFit, IsExactForNoiseFreeGaussians) {
   for (const double sigma : {0.6, 1.0, 3.0, 10.0})
     for (double centre = 39.5; centre < 40.5; centre += 0.0625) {
       const auto values = pulse(centre, sigma, 1000, 81);
-      const auto fit = fit_gaussian({values, 0, 1}, {std::round(centre), 1.3 * sigma, 700}, Width::free);
+      const auto fit =
+          fit_gaussian({values, 0, 1}, {std::round(centre), 1.3 * sigma, 700}, Width::free);
       ASSERT_TRUE(fit) << sigma << " " << centre;
       EXPECT_NEAR(fit->shape.centre, centre, 1e-6 * sigma);
       EXPECT_NEAR(fit->shape.sigma, sigma, 1e-5 * sigma);
@@ -95,9 +96,10 @@ TEST(GaussianFit, NeverGivesANanForFewPhotons) {
     }
 }
 
-// The window is symmetric about the result, so only the sampling is left: its first alias shifts the
-// centre by 2 s^2 2 pi exp(-2 pi^2 s^2), 0.0037 px at 0.6 px, nothing from 1 px on; the truncation at
-// 3 s + 1 px, where the end samples count by their covered share, leaves less than 1e-3 s.
+// The window is symmetric about the result, so only the sampling is left: its first alias shifts
+// the centre by 2 s^2 2 pi exp(-2 pi^2 s^2), 0.0037 px at 0.6 px, nothing from 1 px on; the
+// truncation at 3 s + 1 px, where the end samples count by their covered share, leaves less than
+// 1e-3 s.
 TEST(Centroid, IsCentredOnItsOwnWindow) {
   for (const double sigma : {0.6, 1.0, 3.0, 10.0})
     for (double centre = 39.5; centre < 40.5; centre += 0.0625) {

@@ -18,8 +18,13 @@ namespace {
 // Camera at the origin, laser at x = 0.1 m, its plane turned by 30 degrees towards the axis.
 LaserLineCalibration device(double k1 = 0) {
   LaserLineCalibration calibration;
-  calibration.camera = {.width_px = 240, .height_px = 60, .fx_px = 400, .fy_px = 400, .cx_px = 119.5,
-                        .cy_px = 29.5, .k1 = k1};
+  calibration.camera = {.width_px = 240,
+                        .height_px = 60,
+                        .fx_px = 400,
+                        .fy_px = 400,
+                        .cx_px = 119.5,
+                        .cy_px = 29.5,
+                        .k1 = k1};
   const double angle = M_PI / 6;
   calibration.plane_normal = {std::cos(angle), 0, std::sin(angle)};
   calibration.plane_offset_m = 0.1 * std::cos(angle);
@@ -70,8 +75,8 @@ Rendered render(const LaserLineCalibration& c, const Surface& surface, double si
       result.truth.push_back(on_light_plane(c, centre, row));
       for (int column = 0; column < image.width; ++column) {
         const double expected = 10 + amplitude_e * test::bell(column - centre, sigma_px);
-        image(column, row) = noise ? test::noisy(c.sensor, expected, random)
-                                   : test::digitise(c.sensor, expected);
+        image(column, row) =
+            noise ? test::noisy(c.sensor, expected, random) : test::digitise(c.sensor, expected);
       }
     }
     result.frames.images.push_back(image);
@@ -87,9 +92,9 @@ std::size_t total(const Scan& scan) {
                          [](std::size_t sum, const auto& miss) { return sum + miss.second; });
 }
 
-// Noise-free readings leave their rounding: the peak errs by at most 3 s / A px (stripe_peak_test), and
-// a column moves the point by at most 2 Z / (f sin(angle)) along the ray: with Z <= 0.25 m, s = 2 px,
-// A = 20,000 e that is 0.75 um.
+// Noise-free readings leave their rounding: the peak errs by at most 3 s / A px (stripe_peak_test),
+// and a column moves the point by at most 2 Z / (f sin(angle)) along the ray: with Z <= 0.25 m, s =
+// 2 px, A = 20,000 e that is 0.75 um.
 TEST(LaserLine, RecoversPlanesAndSpheresToTheRounding) {
   for (const double k1 : {0.0, -0.15})
     for (const Surface& surface : {plane({0.1, 0.2, 0.97}, 0.16), sphere({0, 0, 0.35}, 0.18)}) {
@@ -138,7 +143,8 @@ TEST(LaserLine, EveryRowIsAPointOrAMiss) {
       if (scene.frames.images[0](column, row) > 1000) scene.frames.images[0](column, row) = 65535;
   for (int row = 15; row < 22; ++row)  // a second, equal stripe
     for (int column = 0; column < 60; ++column)
-      scene.frames.images[0](column, row) += static_cast<std::uint16_t>(2000 * test::bell(column - 30, 2));
+      scene.frames.images[0](column, row) +=
+          static_cast<std::uint16_t>(2000 * test::bell(column - 30, 2));
   const Scan scan = acquire_laser_line(scene.frames);
   EXPECT_EQ(total(scan), 180u);
   EXPECT_EQ(scan.misses.at(std::string(reason::no_signal)), 10u);

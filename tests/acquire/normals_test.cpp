@@ -44,8 +44,8 @@ TEST(Normals, AreThoseOfThePlane) {
   }
 }
 
-// A fit over a cap of radius a on a sphere of radius R: neighbours are not quite symmetric about the
-// point; tilt below a / R = 0.02, in the mean well below half of it.
+// A fit over a cap of radius a on a sphere of radius R: neighbours are not quite symmetric about
+// the point; tilt below a / R = 0.02, in the mean well below half of it.
 TEST(Normals, AreThoseOfTheSphere) {
   RandomStream random(51, 0, 0);
   Scan scan;
@@ -55,7 +55,8 @@ TEST(Normals, AreThoseOfTheSphere) {
   estimate_normals(scan);
   double mean = 0;
   for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
-    const double cosine = scan.cloud.normals[i].dot(-scan.cloud.points[i]);  // viewpoint: the centre
+    const double cosine =
+        scan.cloud.normals[i].dot(-scan.cloud.points[i]);  // viewpoint: the centre
     EXPECT_GT(cosine, std::cos(0.05));
     mean += std::acos(std::min(cosine, 1.0)) / 20'000;
   }
@@ -116,8 +117,8 @@ TEST(Normals, LeaveOutPointsThatAreNotFinite) {
   }
 }
 
-// One point of sigma 1 m lies 3 mm off a plane of sigma 1 um: it weighs 1e-12, and moves no normal by
-// more than 1e-12 * 3 mm over 10 mm.
+// One point of sigma 1 m lies 3 mm off a plane of sigma 1 um: it weighs 1e-12, and moves no normal
+// by more than 1e-12 * 3 mm over 10 mm.
 TEST(Normals, WeighBySigma) {
   Scan scan = grid_scan(10, 10, plane({0, 0, 1}, 1));
   scan.cloud.sigma_m.assign(100, 1e-6);

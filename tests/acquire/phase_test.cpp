@@ -22,8 +22,12 @@ struct Light {
 
 PhaseTaps device(std::vector<double> frequencies_hz, int width, int height, double max_range_m) {
   PhaseTaps frames;
-  frames.calibration.camera = {.width_px = width, .height_px = height, .fx_px = 100, .fy_px = 100,
-                               .cx_px = (width - 1) / 2.0, .cy_px = (height - 1) / 2.0};
+  frames.calibration.camera = {.width_px = width,
+                               .height_px = height,
+                               .fx_px = 100,
+                               .fy_px = 100,
+                               .cx_px = (width - 1) / 2.0,
+                               .cy_px = (height - 1) / 2.0};
   frames.calibration.max_range_m = max_range_m;
   frames.taps.resize(frequencies_hz.size());
   frames.calibration.frequencies_hz = std::move(frequencies_hz);
@@ -78,13 +82,16 @@ TEST(Phase, RecoversAPlaneToTheRounding) {
   }
 }
 
-// Golden values of sigma_d = c / (4 sqrt(2) pi f) sqrt(B) / A, mm; the taps' rounding adds 1/12 to B.
+// Golden values of sigma_d = c / (4 sqrt(2) pi f) sqrt(B) / A, mm; the taps' rounding adds 1/12 to
+// B.
 TEST(Phase, ReportsTheLawOfLange) {
   struct Golden {
     double frequency_hz, amplitude_e, offset_e, sigma_mm, rounding_mm;
   };
-  for (const Golden& golden : {Golden{80e6, 1000, 2000, 9.43, 0.005}, {20e6, 1000, 2000, 37.7, 0.05},
-                               {120e6, 1000, 2000, 6.29, 0.005}, {80e6, 100, 200, 29.8, 0.15},
+  for (const Golden& golden : {Golden{80e6, 1000, 2000, 9.43, 0.005},
+                               {20e6, 1000, 2000, 37.7, 0.05},
+                               {120e6, 1000, 2000, 6.29, 0.005},
+                               {80e6, 100, 200, 29.8, 0.15},
                                {80e6, 100, 20'000, 298, 1}}) {
     PhaseTaps frames = device({golden.frequency_hz}, 1, 1, 0.9);
     const double distance_m = golden.frequency_hz > 1e8 ? 0.5 : 0.8;
@@ -102,7 +109,8 @@ TEST(Phase, ReportsTheLawOfLange) {
 TEST(Phase, ScattersAsItReports) {
   PhaseTaps frames = device({80e6}, 100, 100, 1.8);
   frames.calibration.sensor = {.gain_e_per_dn = 3, .offset_dn = 20, .read_noise_e = 25};
-  expose(frames, {}, [](std::size_t) { return 0.9; }, 21);
+  expose(
+      frames, {}, [](std::size_t) { return 0.9; }, 21);
   const Scan scan = acquire_phase(frames);
   ASSERT_EQ(scan.cloud.size(), 10'000u);
   const double variance = 2000 + 25 * 25 + 9 / 12.0;
@@ -115,8 +123,8 @@ TEST(Phase, ScattersAsItReports) {
 }
 
 // Every distance of the combined range, two and three frequencies, with noise: no wrong wrap. One
-// that is 4 sigma or more from its truth must not be among 3,000 with probability 0.83, 5 sigma with
-// 0.998.
+// that is 4 sigma or more from its truth must not be among 3,000 with probability 0.83, 5 sigma
+// with 0.998.
 TEST(Phase, UnwrapsTheWholeRange) {
   for (const auto& frequencies :
        {std::vector<double>{80e6, 100e6}, std::vector<double>{16e6, 80e6, 120e6}}) {
@@ -135,9 +143,11 @@ TEST(Phase, UnwrapsTheWholeRange) {
 // Frequencies together are as precise as the inverse variances' sum says.
 TEST(Phase, CombinesFrequenciesByTheirInformation) {
   PhaseTaps frames = device({80e6, 100e6}, 60, 50, 7);
-  expose(frames, {}, [](std::size_t) { return 4.0; }, 23);
+  expose(
+      frames, {}, [](std::size_t) { return 4.0; }, 23);
   const Scan scan = acquire_phase(frames);
-  const double one_hz_m = speed_of_light_m_s / (4 * std::sqrt(2.0) * M_PI) * std::sqrt(2000.0) / 1000;
+  const double one_hz_m =
+      speed_of_light_m_s / (4 * std::sqrt(2.0) * M_PI) * std::sqrt(2000.0) / 1000;
   const double expected_m = one_hz_m / std::hypot(80e6, 100e6);
   ASSERT_GT(scan.cloud.size(), 2980u);
   EXPECT_NEAR(spread_m(scan, 4), expected_m, 4 / std::sqrt(6000.0) * expected_m);
@@ -168,8 +178,8 @@ TEST(Phase, NamesTheReasonOfEachMiss) {
   EXPECT_EQ(only_miss(frames), reason::inconsistent);
 }
 
-// 0.999 and 1.001 of the unambiguous range: within noise of the fold either side is as likely, and a
-// limit short of the fold decides.
+// 0.999 and 1.001 of the unambiguous range: within noise of the fold either side is as likely, and
+// a limit short of the fold decides.
 TEST(Phase, IsAmbiguousAtTheFold) {
   const double period_m = speed_of_light_m_s / (2 * 80e6);
   for (const double share : {0.999, 1.001}) {

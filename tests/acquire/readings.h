@@ -13,7 +13,8 @@
 namespace scan::test {
 
 inline std::uint16_t digitise(const Sensor& sensor, double electrons) {
-  const double dn = std::min(electrons, sensor.full_well_e) / sensor.gain_e_per_dn + sensor.offset_dn;
+  const double dn =
+      std::min(electrons, sensor.full_well_e) / sensor.gain_e_per_dn + sensor.offset_dn;
   return static_cast<std::uint16_t>(std::clamp(std::round(dn), 0.0, std::exp2(sensor.bits) - 1));
 }
 
@@ -23,11 +24,13 @@ inline std::uint16_t noisy(const Sensor& sensor, double expected_e, RandomStream
                               sensor.read_noise_e * random.normal());
 }
 
-inline double bell(double x, double sigma) { return std::exp(-x * x / (2 * sigma * sigma)); }
+inline double bell(double x, double sigma) {
+  return std::exp(-x * x / (2 * sigma * sigma));
+}
 
-// Sum over `count` trials of (error / reported sigma)^2 has mean `count` and variance 2 count if the
-// sigma is right and the errors normal: its mean over the trials must lie within
-// 1 +- 4 sqrt(2 / count), plus `model` for the stated approximation of the method.
+// Sum over `count` trials of (error / reported sigma)^2 has mean `count` and variance 2 count if
+// the sigma is right and the errors normal: its mean over the trials must lie within 1 +- 4 sqrt(2
+// / count), plus `model` for the stated approximation of the method.
 inline double chi_square_margin(double count, double model = 0) {
   return 4 * std::sqrt(2 / count) + model;
 }

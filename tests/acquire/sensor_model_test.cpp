@@ -26,7 +26,8 @@ TEST(Sensor, VarianceIsShotPlusReadPlusRounding) {
 }
 
 TEST(Sensor, SaturatesAtTheFullWellOrTheLastNumber) {
-  EXPECT_EQ(saturation_dn({.gain_e_per_dn = 2, .offset_dn = 10, .full_well_e = 1000, .bits = 12}), 510);
+  EXPECT_EQ(saturation_dn({.gain_e_per_dn = 2, .offset_dn = 10, .full_well_e = 1000, .bits = 12}),
+            510);
   EXPECT_EQ(saturation_dn({.gain_e_per_dn = 2, .bits = 12}), 4095);
 }
 
@@ -40,14 +41,15 @@ TEST(Sensor, RefusesFieldsOutOfTheirDomain) {
 }
 
 // 4,000 Poisson readings of mean 50 with read noise 5, a third of them covered by a bright signal.
-// Clipping at three sigma keeps 99.7 % and lowers the variance by under 3 %; the mean's own sigma is
-// sqrt(75 / 2600) = 0.17 e.
+// Clipping at three sigma keeps 99.7 % and lowers the variance by under 3 %; the mean's own sigma
+// is sqrt(75 / 2600) = 0.17 e.
 TEST(Background, IsNotMovedByTheSignal) {
   const Sensor sensor{.read_noise_e = 5};
   RandomStream random(1, 0, 0);
   std::vector<double> row;
   for (int i = 0; i < 4000; ++i)
-    row.push_back(test::noisy({.offset_dn = 100, .read_noise_e = 5}, i < 1300 ? 3000 : 50, random) - 100.0);
+    row.push_back(test::noisy({.offset_dn = 100, .read_noise_e = 5}, i < 1300 ? 3000 : 50, random) -
+                  100.0);
   const Background background = estimate_background(row, sensor);
   EXPECT_NEAR(background.level_e, 50, 1);
   EXPECT_NEAR(background.variance_e2, 75, 6);

@@ -23,7 +23,8 @@ class Texture {
       const double direction = 2 * M_PI * random.uniform();
       const double wavelength_px = 7 + 30 * random.uniform();
       waves_.push_back({2 * M_PI * std::cos(direction) / wavelength_px,
-                        2 * M_PI * std::sin(direction) / wavelength_px, 2 * M_PI * random.uniform()});
+                        2 * M_PI * std::sin(direction) / wavelength_px,
+                        2 * M_PI * random.uniform()});
     }
   }
   // Grey levels, mean 128, standard deviation 30.
@@ -60,16 +61,22 @@ inline std::uint8_t grey(double value) {
 inline ImagePair render(const Texture& texture, const Disparity& disparity, int width, int height,
                         int disparities, double noise) {
   ImagePair pair;
-  pair.calibration = {.width_px = width, .height_px = height, .focal_px = 500,
-                      .cx_px = (width - 1) / 2.0, .cy_px = (height - 1) / 2.0, .doffs_px = 5,
-                      .baseline_m = 0.1, .min_disparity_px = 0, .disparities_px = disparities};
+  pair.calibration = {.width_px = width,
+                      .height_px = height,
+                      .focal_px = 500,
+                      .cx_px = (width - 1) / 2.0,
+                      .cy_px = (height - 1) / 2.0,
+                      .doffs_px = 5,
+                      .baseline_m = 0.1,
+                      .min_disparity_px = 0,
+                      .disparities_px = disparities};
   pair.left = pair.right = Image<std::uint8_t>(width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       RandomStream random(41, 0, pair.left.index(x, y));
       pair.left(x, y) = grey(texture(x, y) + noise * random.normal());
-      pair.right(x, y) = grey(texture(left_place(disparity, x, y, disparities), y) +
-                              noise * random.normal());
+      pair.right(x, y) =
+          grey(texture(left_place(disparity, x, y, disparities), y) + noise * random.normal());
     }
   return pair;
 }

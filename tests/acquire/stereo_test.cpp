@@ -17,7 +17,9 @@ namespace {
 constexpr int width = 240, height = 120, disparities = 48;
 
 // Places where the windows of matcher and refinement lie within both images.
-bool is_inner(int x, int y) { return x > disparities + 8 && x < width - 8 && y > 8 && y < height - 8; }
+bool is_inner(int x, int y) {
+  return x > disparities + 8 && x < width - 8 && y > 8 && y < height - 8;
+}
 
 struct Statistics {
   double inner = 0, found = 0, within_2_sigma = 0, within_4_sigma = 0, mean_square_px2 = 0;
@@ -40,8 +42,11 @@ Statistics compare(const DisparityMap& map, const test::Disparity& truth) {
   return result;
 }
 
-double slanted(double x, double y) { return 20 + 0.05 * (x - 120) - 0.08 * (y - 60); }
-// A sphere of radius 0.6 m, its centre 1.7 m in front of the camera: Z = f B / (d + doffs), here f B = 50.
+double slanted(double x, double y) {
+  return 20 + 0.05 * (x - 120) - 0.08 * (y - 60);
+}
+// A sphere of radius 0.6 m, its centre 1.7 m in front of the camera: Z = f B / (d + doffs), here f
+// B = 50.
 double bulging(double x, double y) {
   const double u = (x - 119.5) / 500, v = (y - 59.5) / 500;
   const double a = u * u + v * v + 1, half_b = 1.7, c = 1.7 * 1.7 - 0.36;
@@ -49,9 +54,9 @@ double bulging(double x, double y) {
   return 50 * a / (half_b - std::sqrt(inside)) - 5;
 }
 
-// Noise-free: what is left is the rounding (sigma 0.29 in both images), the cubic convolution and the
-// straight disparity within a window. A third of the matcher's step of 1/16 px proves the refinement:
-// the matcher itself errs by 0.1 px here.
+// Noise-free: what is left is the rounding (sigma 0.29 in both images), the cubic convolution and
+// the straight disparity within a window. A third of the matcher's step of 1/16 px proves the
+// refinement: the matcher itself errs by 0.1 px here.
 TEST(Stereo, RecoversAPlaneAndASphereBelowTheMatchersStep) {
   const test::Texture texture(1);
   for (const test::Disparity& truth : {test::Disparity(slanted), test::Disparity(bulging)}) {
@@ -62,9 +67,9 @@ TEST(Stereo, RecoversAPlaneAndASphereBelowTheMatchersStep) {
   }
 }
 
-// Of normal errors 95.4 % lie within 2 sigma and all but 6e-5 within 4. The residual's variance is taken
-// from 49 pixels (10 %) and the windows overlap, so some 400 of them are independent: 4 sqrt(0.95 *
-// 0.05 / 400) = 4 %.
+// Of normal errors 95.4 % lie within 2 sigma and all but 6e-5 within 4. The residual's variance is
+// taken from 49 pixels (10 %) and the windows overlap, so some 400 of them are independent: 4
+// sqrt(0.95 * 0.05 / 400) = 4 %.
 TEST(Stereo, ReportsItsScatter) {
   const test::Texture texture(2);
   for (const double noise : {2.0, 6.0}) {
@@ -89,7 +94,8 @@ TEST(Stereo, EveryPixelIsAPointOrAMiss) {
 
 // Left pixels whose partner lies outside the right image, more than a pixel: some 1,600.
 TEST(Stereo, EndsAtTheBorderOfTheRightImage) {
-  const DisparityMap map = match(test::render(test::Texture(3), slanted, width, height, disparities, 1));
+  const DisparityMap map =
+      match(test::render(test::Texture(3), slanted, width, height, disparities, 1));
   int unseen = 0, wrong = 0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < slanted(x, y) - 1; ++x) {
@@ -102,7 +108,8 @@ TEST(Stereo, EndsAtTheBorderOfTheRightImage) {
 
 // A flat patch of 40 x 30 px, the blocks on its rim see texture.
 TEST(Stereo, HasNoSignalWithoutTexture) {
-  ImagePair pair = test::render(test::Texture(3), [](double, double) { return 10.0; }, 160, 60, 32, 0);
+  ImagePair pair = test::render(
+      test::Texture(3), [](double, double) { return 10.0; }, 160, 60, 32, 0);
   for (int y = 15; y < 45; ++y)
     for (int x = 80; x < 120; ++x) pair.left(x, y) = pair.right(x - 10, y) = 90;
   const DisparityMap map = match(pair);
@@ -110,25 +117,27 @@ TEST(Stereo, HasNoSignalWithoutTexture) {
   EXPECT_GE(map.misses.at(std::string(reason::no_signal)), 35u * 26u);
 }
 
-// Noise of one grey level, so that of the four equal matches none has the cost 0.
-TEST(Stereo, IsAmbiguousOnARepeatingPattern) {
+// Two images of different things: hardly a match survives, most fail for want of a unique one.
+TEST(Stereo, IsAmbiguousWhereNothingMatches) {
   ImagePair pair = test::render(test::Texture(3), slanted, 160, 60, 32, 0);
-  for (int y = 0; y < 60; ++y)
-    for (int x = 0; x < 160; ++x) {
-      RandomStream random(42, 0, pair.left.index(x, y));
-      const double wave = 128 + 80 * std::cos(2 * M_PI * x / 8);
-      pair.left(x, y) = test::grey(wave + random.normal());
-      pair.right(x, y) = test::grey(wave + random.normal());
-    }
+  for (std::size_t i = 0; i < pair.left.pixels.size(); ++i) {
+    RandomStream random(42, 0, i);
+    pair.left.pixels[i] = test::grey(128 + 40 * random.normal());
+    pair.right.pixels[i] = test::grey(128 + 40 * random.normal());
+  }
   const DisparityMap map = match(pair);
-  EXPECT_GT(map.misses.at(std::string(reason::ambiguous)), 160u * 60u / 2);
+  EXPECT_GT(map.misses.at(std::string(reason::ambiguous)), 160u * 60u * 2 / 3);
+  const auto matched = std::count_if(map.disparity_px.pixels.begin(), map.disparity_px.pixels.end(),
+                                     [](float d) { return !std::isnan(d); });
+  EXPECT_LT(matched, 160 * 60 / 20);
 }
 
 // A square 20 px nearer hides a strip of 20 px at its left side from the right camera: in the left
 // image those pixels have no true partner.
 TEST(Stereo, IsInconsistentWhereTheRightCameraSeesNothing) {
   const test::Texture near(4), far(5);
-  ImagePair pair = test::render(far, [](double, double) { return 10.0; }, width, height, 48, 0);
+  ImagePair pair = test::render(
+      far, [](double, double) { return 10.0; }, width, height, 48, 0);
   for (int y = 30; y < 90; ++y)
     for (int x = 120; x < 180; ++x) {
       pair.left(x, y) = test::grey(near(x, y));
@@ -144,8 +153,13 @@ TEST(Stereo, IsInconsistentWhereTheRightCameraSeesNothing) {
 
 // Golden values: f = 640 px, B = 50 mm, sigma_d = 0.08 px.
 TEST(StereoPoints, FollowTheQuadraticLaw) {
-  const StereoCalibration calibration{.width_px = 4, .height_px = 1, .focal_px = 640, .cx_px = 0,
-                                      .cy_px = 0, .doffs_px = 0, .baseline_m = 0.05};
+  const StereoCalibration calibration{.width_px = 4,
+                                      .height_px = 1,
+                                      .focal_px = 640,
+                                      .cx_px = 0,
+                                      .cy_px = 0,
+                                      .doffs_px = 0,
+                                      .baseline_m = 0.05};
   DisparityMap map{Image<float>(4, 1), Image<float>(4, 1, 0.08f), {}};
   const double depths_m[] = {0.5, 1, 2, 4}, sigmas_mm[] = {0.625, 2.5, 10, 40};
   for (int i = 0; i < 4; ++i) map.disparity_px(i, 0) = static_cast<float>(32 / depths_m[i]);
@@ -153,7 +167,8 @@ TEST(StereoPoints, FollowTheQuadraticLaw) {
   ASSERT_EQ(scan.cloud.size(), 4u);
   for (int i = 0; i < 4; ++i) {
     EXPECT_NEAR(scan.cloud.points[i].z(), depths_m[i], 1e-6);
-    EXPECT_NEAR(mm_from_m(std::sqrt(scan.cloud.covariances[i](2, 2))), sigmas_mm[i], 1e-4 * sigmas_mm[i]);
+    EXPECT_NEAR(mm_from_m(std::sqrt(scan.cloud.covariances[i](2, 2))), sigmas_mm[i],
+                1e-4 * sigmas_mm[i]);
     const Eigen::Vector3d ray = scan.cloud.points[i].normalized();
     EXPECT_NEAR(std::sqrt(ray.dot(scan.cloud.covariances[i] * ray)), scan.cloud.sigma_m[i], 1e-12);
   }
@@ -161,8 +176,13 @@ TEST(StereoPoints, FollowTheQuadraticLaw) {
 
 // The map's own differences: move the disparity by a little, the point moves by sqrt(covariance).
 TEST(StereoPoints, CovarianceIsTheDerivative) {
-  const StereoCalibration calibration{.width_px = 3, .height_px = 2, .focal_px = 500, .cx_px = -40,
-                                      .cy_px = 70, .doffs_px = 7, .baseline_m = 0.2};
+  const StereoCalibration calibration{.width_px = 3,
+                                      .height_px = 2,
+                                      .focal_px = 500,
+                                      .cx_px = -40,
+                                      .cy_px = 70,
+                                      .doffs_px = 7,
+                                      .baseline_m = 0.2};
   DisparityMap map{Image<float>(3, 2, 20), Image<float>(3, 2, 0.125f), {}};
   const Scan scan = points_from(map, calibration);
   map.disparity_px.pixels.assign(6, 20.0625f);
@@ -171,14 +191,20 @@ TEST(StereoPoints, CovarianceIsTheDerivative) {
   const Scan less = points_from(map, calibration);
   for (int i = 0; i < 6; ++i) {
     const Eigen::Vector3d shift = less.cloud.points[i] - more.cloud.points[i];  // 0.125 px
-    EXPECT_LT((shift * shift.transpose() - scan.cloud.covariances[i]).norm(),
-              1e-4 * scan.cloud.covariances[i].norm());  // (0.0625 / 27)^2 = 5e-6, doubled by squaring
+    EXPECT_LT(
+        (shift * shift.transpose() - scan.cloud.covariances[i]).norm(),
+        1e-4 * scan.cloud.covariances[i].norm());  // (0.0625 / 27)^2 = 5e-6, doubled by squaring
   }
 }
 
 TEST(StereoPoints, DepthIsUndeterminedNearInfinity) {
-  const StereoCalibration calibration{.width_px = 5, .height_px = 1, .focal_px = 500, .cx_px = 0,
-                                      .cy_px = 0, .doffs_px = -3, .baseline_m = 0.2};
+  const StereoCalibration calibration{.width_px = 5,
+                                      .height_px = 1,
+                                      .focal_px = 500,
+                                      .cx_px = 0,
+                                      .cy_px = 0,
+                                      .doffs_px = -3,
+                                      .baseline_m = 0.2};
   DisparityMap map{Image<float>(5, 1), Image<float>(5, 1, 0.1f), {{"border", 1}}};
   map.disparity_px.pixels = {2, 3, 3.25, 3.5, std::nanf("")};
   const Scan scan = points_from(map, calibration);
@@ -189,8 +215,8 @@ TEST(StereoPoints, DepthIsUndeterminedNearInfinity) {
 }
 
 TEST(Stereo, SigmaOfTheCallerReplacesTheEstimate) {
-  const DisparityMap map = match(test::render(test::Texture(3), slanted, 120, 60, 48, 0),
-                                 {.disparity_sigma_px = 0.25});
+  const DisparityMap map =
+      match(test::render(test::Texture(3), slanted, 120, 60, 48, 0), {.disparity_sigma_px = 0.25});
   for (std::size_t i = 0; i < map.sigma_px.pixels.size(); ++i)
     EXPECT_TRUE(std::isnan(map.disparity_px.pixels[i]) ? std::isnan(map.sigma_px.pixels[i])
                                                        : map.sigma_px.pixels[i] == 0.25f);

@@ -24,7 +24,8 @@ std::vector<double> row_of(std::initializer_list<Line> lines, int width, double 
   std::vector<double> row;
   for (int x = 0; x < width; ++x) {
     double expected = background_e;
-    for (const Line& line : lines) expected += line.amplitude * test::bell(x - line.centre, line.sigma);
+    for (const Line& line : lines)
+      expected += line.amplitude * test::bell(x - line.centre, line.sigma);
     row.push_back(electrons(
         with, random ? test::noisy(with, expected, *random) : test::digitise(with, expected)));
   }
@@ -35,8 +36,8 @@ StripePeak locate(const std::vector<double>& row, PeakMethod method = PeakMethod
   return locate_stripe(row, sensor, {.peak = method});
 }
 
-// Largest error over a sweep of sub-pixel places; amplitude 20,000 keeps the rounding of the readings,
-// at most 1.8 s / A px (see below), under 1e-3 px for every width.
+// Largest error over a sweep of sub-pixel places; amplitude 20,000 keeps the rounding of the
+// readings, at most 1.8 s / A px (see below), under 1e-3 px for every width.
 double worst_bias_px(PeakMethod method, double sigma) {
   double worst = 0;
   for (double centre = 99.5; centre < 100.5; centre += 1.0 / 64) {
@@ -47,16 +48,16 @@ double worst_bias_px(PeakMethod method, double sigma) {
   return worst;
 }
 
-// Rounding errs by at most 1/2 in each reading m. The fit weighs by 1 / m, so the centre moves by at
-// most sum |x| / 2s^2 over A sqrt(2 pi) / s, within 3 s: 4.5 s / (2.5 A) = 1.8 s / A; where few samples
-// stand for the integrals (s = 0.6) by up to 3 s / A.
+// Rounding errs by at most 1/2 in each reading m. The fit weighs by 1 / m, so the centre moves by
+// at most sum |x| / 2s^2 over A sqrt(2 pi) / s, within 3 s: 4.5 s / (2.5 A) = 1.8 s / A; where few
+// samples stand for the integrals (s = 0.6) by up to 3 s / A.
 TEST(GaussianPeak, IsExactButForRounding) {
   for (const double sigma : {0.6, 1.0, 2.5, 5.0, 10.0})
     EXPECT_LE(worst_bias_px(PeakMethod::gaussian, sigma), 3 * sigma / 20'000) << sigma;
 }
 
-// The sampling's first alias shifts a centre of mass by 4 pi s^2 exp(-2 pi^2 s^2), 0.0037 px at 0.6 px
-// and nothing from 1 px on; the window's end is left.
+// The sampling's first alias shifts a centre of mass by 4 pi s^2 exp(-2 pi^2 s^2), 0.0037 px at 0.6
+// px and nothing from 1 px on; the window's end is left.
 TEST(CentroidPeak, KeepsItsStatedBias) {
   EXPECT_LE(worst_bias_px(PeakMethod::centroid, 0.6), 0.004);
   for (const double sigma : {1.0, 2.5, 5.0, 10.0})
@@ -90,8 +91,8 @@ Statistics trials(PeakMethod method, double sigma, double amplitude, double back
   return result;
 }
 
-// Shot noise alone: s / sqrt(N) px (physics: Cramer-Rao of a Gaussian's place). Goal 1.2; the ratio's
-// own standard deviation is 1 / sqrt(2 * 1500) = 1.8 %, so it may also fall 6 % below 1.
+// Shot noise alone: s / sqrt(N) px (physics: Cramer-Rao of a Gaussian's place). Goal 1.2; the
+// ratio's own standard deviation is 1 / sqrt(2 * 1500) = 1.8 %, so it may also fall 6 % below 1.
 TEST(GaussianPeak, ComesWithinATenthOfTheShotNoiseBound) {
   for (const double sigma : {0.6, 1.0, 2.5, 10.0}) {
     const double amplitude = 2000, count = 1500;

@@ -40,8 +40,9 @@ Waveforms record(const Device& device, const std::vector<std::vector<Echo>>& ray
     for (std::uint32_t i = 0; i < device.samples; ++i) {
       double expected = device.ambient_e;
       for (const Echo& echo : rays[ray])
-        expected += echo.height_e * test::bell(device.start_s + i * device.interval_s -
-                                                   echo.range_m / half_c, device.pulse_s);
+        expected += echo.height_e *
+                    test::bell(device.start_s + i * device.interval_s - echo.range_m / half_c,
+                               device.pulse_s);
       frames.samples.push_back(seed == 0 ? test::digitise(device.sensor, expected)
                                          : test::noisy(device.sensor, expected, random));
     }
@@ -49,10 +50,10 @@ Waveforms record(const Device& device, const std::vector<std::vector<Echo>>& ray
   return frames;
 }
 
-// Ranges over one sample step, noise-free. Rounding by 1/2 in each reading moves the maximum-likelihood
-// time by at most 3 s / A (as in stripe_peak_test.cpp) and the half-height crossing by at most
-// (1/2 + 1/2) / slope, slope = A sqrt(2 ln 2) / (2 s), again under 3 s / A; the centroid's window adds
-// 5e-4 s (gaussian_fit_test.cpp).
+// Ranges over one sample step, noise-free. Rounding by 1/2 in each reading moves the
+// maximum-likelihood time by at most 3 s / A (as in stripe_peak_test.cpp) and the half-height
+// crossing by at most (1/2 + 1/2) / slope, slope = A sqrt(2 ln 2) / (2 s), again under 3 s / A; the
+// centroid's window adds 5e-4 s (gaussian_fit_test.cpp).
 TEST(Waveform, RecoversTheRangeToTheRounding) {
   const double height_e = 20'000;
   for (const double pulse_samples : {1.0, 2.0, 4.0}) {
@@ -62,7 +63,8 @@ TEST(Waveform, RecoversTheRangeToTheRounding) {
     for (const PulseMethod method : methods) {
       const Scan scan = acquire_waveform(record(device, rays), {.pulse = method});
       ASSERT_EQ(scan.cloud.size(), rays.size());
-      const double bound_s = device.pulse_s * (3 / height_e + (method == PulseMethod::centroid) * 5e-4);
+      const double bound_s =
+          device.pulse_s * (3 / height_e + (method == PulseMethod::centroid) * 5e-4);
       for (std::size_t i = 0; i < rays.size(); ++i)
         EXPECT_NEAR(scan.cloud.points[i].norm(), rays[i][0].range_m, half_c * bound_s)
             << static_cast<int>(method) << " " << pulse_samples;
@@ -74,7 +76,8 @@ struct Statistics {
   double found = 0, spread_m2 = 0, chi_square = 0;
 };
 
-Statistics trials(const Device& device, double height_e, const WaveformOptions& options, int count) {
+Statistics trials(const Device& device, double height_e, const WaveformOptions& options,
+                  int count) {
   std::vector<std::vector<Echo>> rays;
   for (int i = 0; i < count; ++i) {
     RandomStream random(31, 0, i);
@@ -91,8 +94,8 @@ Statistics trials(const Device& device, double height_e, const WaveformOptions& 
   return result;
 }
 
-// Shot noise alone: sigma_t = s / sqrt(N), N the electrons of the echo (Cramer-Rao). The spread over
-// 3,000 echoes has a relative standard deviation of 1.3 %: 0.95 to 1.05 is four of them.
+// Shot noise alone: sigma_t = s / sqrt(N), N the electrons of the echo (Cramer-Rao). The spread
+// over 3,000 echoes has a relative standard deviation of 1.3 %: 0.95 to 1.05 is four of them.
 TEST(MatchedFilter, AttainsTheShotNoiseBound) {
   const Device device{.ambient_e = 0};
   const double height_e = 500, electrons = height_e * 2 * std::sqrt(2 * M_PI);
@@ -102,14 +105,15 @@ TEST(MatchedFilter, AttainsTheShotNoiseBound) {
   EXPECT_NEAR(std::sqrt(result.spread_m2 / result.found) / bound_m, 1, 0.055);
 }
 
-// Strong ambient light and read noise: sigma_t^2 = v / sum m'^2, sum m'^2 = A^2 sqrt(pi) / (2 s) with s
-// in samples. The pulse's own shot noise, A / v = 5 %, adds at most that.
+// Strong ambient light and read noise: sigma_t^2 = v / sum m'^2, sum m'^2 = A^2 sqrt(pi) / (2 s)
+// with s in samples. The pulse's own shot noise, A / v = 5 %, adds at most that.
 TEST(MatchedFilter, AttainsTheAmbientBound) {
   const Device device{.ambient_e = 3000, .sensor = {.offset_dn = 500, .read_noise_e = 30}};
   const double height_e = 600, variance = 3000 + 900 + 1 / 12.0, s = 2;
   const Statistics result = trials(device, height_e, {}, 3000);
   EXPECT_GT(result.found, 2990);
-  const double bound_samples = std::sqrt(variance / (height_e * height_e * std::sqrt(M_PI) / (2 * s)));
+  const double bound_samples =
+      std::sqrt(variance / (height_e * height_e * std::sqrt(M_PI) / (2 * s)));
   const double ratio = std::sqrt(result.spread_m2 / result.found) / (half_c * 1e-9 * bound_samples);
   EXPECT_GT(ratio, 0.95);
   EXPECT_LT(ratio, 1.15);
@@ -118,7 +122,8 @@ TEST(MatchedFilter, AttainsTheAmbientBound) {
 // The background comes from about 100 samples (its variance by 14 %, but shot noise of the echo
 // dominates) and errors are normal to first order: 12 % beside the statistics.
 TEST(Waveform, ReportsItsScatter) {
-  const Device device{.ambient_e = 20, .sensor = {.gain_e_per_dn = 2, .offset_dn = 30, .read_noise_e = 5}};
+  const Device device{.ambient_e = 20,
+                      .sensor = {.gain_e_per_dn = 2, .offset_dn = 30, .read_noise_e = 5}};
   for (const PulseMethod method : methods) {
     const Statistics result = trials(device, 800, {.pulse = method}, 3000);
     EXPECT_EQ(result.found, 3000);
@@ -132,8 +137,8 @@ TEST(Waveform, TakesTheFirstOfTwoEchoes) {
   const Device device;
   for (const double separation_m : {2.0, 4.0})
     for (const PulseMethod method : methods) {
-      const Scan scan =
-          acquire_waveform(record(device, {{{8, 500}, {8 + separation_m, 2000}}}), {.pulse = method});
+      const Scan scan = acquire_waveform(record(device, {{{8, 500}, {8 + separation_m, 2000}}}),
+                                         {.pulse = method});
       ASSERT_EQ(scan.cloud.size(), 1u);
       EXPECT_NEAR(scan.cloud.points[0].norm(), 8, 0.05);
     }
@@ -153,8 +158,14 @@ std::string only_miss(const Waveforms& frames) {
 
 TEST(Waveform, NamesTheReasonOfEachMiss) {
   EXPECT_EQ(only_miss(record({}, {{}})), reason::no_signal);
-  EXPECT_EQ(only_miss(record({.sensor = {.full_well_e = 1000}}, {{{8, 10'000}}})), reason::saturated);
-  EXPECT_EQ(only_miss(record({.sensor = {.full_well_e = 100}, }, {{{8, 1e9}}})), reason::saturated);
+  EXPECT_EQ(only_miss(record({.sensor = {.full_well_e = 1000}}, {{{8, 10'000}}})),
+            reason::saturated);
+  EXPECT_EQ(only_miss(record(
+                {
+                    .sensor = {.full_well_e = 100},
+                },
+                {{{8, 1e9}}})),
+            reason::saturated);
   const double start_m = half_c * 20e-9, end_m = start_m + half_c * 119e-9;
   EXPECT_EQ(only_miss(record({}, {{{start_m, 1000}}})), reason::border);
   EXPECT_EQ(only_miss(record({}, {{{end_m, 1000}}})), reason::border);
@@ -164,7 +175,8 @@ TEST(Waveform, NamesTheReasonOfEachMiss) {
 TEST(Waveform, HasNoSignalInTheDark) {
   const std::vector<std::vector<Echo>> dark(3000);
   for (const double ambient : {0.0, 0.05, 1.0, 30.0})
-    EXPECT_EQ(acquire_waveform(record({.ambient_e = ambient}, dark, 33)).cloud.size(), 0u) << ambient;
+    EXPECT_EQ(acquire_waveform(record({.ambient_e = ambient}, dark, 33)).cloud.size(), 0u)
+        << ambient;
 }
 
 TEST(Waveform, StaysFiniteForFewPhotons) {
