@@ -46,8 +46,8 @@ const std::vector<Layer>& layers() {
 
 const Names estimators = {"libscan/acquire/", "libscan/align/", "libscan/reconstruct/"};
 
-const Names foreign_headers = {"pcl/",    "CGAL/",       "opencv",  "ceres/",
-                               "flann/",  "embree",      "assimp/", "tbb/",
+const Names foreign_headers = {"pcl/",    "CGAL/",       "opencv",      "ceres/",
+                               "flann/",  "embree",      "assimp/",     "tbb/",
                                "oneapi/", "Eigen/Dense", "Eigen/Sparse"};
 
 const Layer* layer_of(const std::string& file) {

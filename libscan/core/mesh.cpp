@@ -167,8 +167,7 @@ EdgeCensus edge_census(const Mesh& mesh) {
   return census;
 }
 
-std::vector<SurfaceSample> sample_surface(const Mesh& mesh, std::size_t count,
-                                          std::uint64_t seed) {
+std::vector<SurfaceSample> sample_surface(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
   std::vector<double> area_up_to(mesh.triangles.size());
   double total = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
@@ -178,7 +177,8 @@ std::vector<SurfaceSample> sample_surface(const Mesh& mesh, std::size_t count,
   std::vector<SurfaceSample> samples(count);
   for (std::size_t i = 0; i < count; ++i) {
     RandomStream random(seed, 0, i);
-    const double target = total * (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
+    const double target =
+        total * (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
     const auto found = std::upper_bound(area_up_to.begin(), area_up_to.end(), target);
     const auto index = std::min<std::size_t>(found - area_up_to.begin(), area_up_to.size() - 1);
     const Triangle& t = mesh.triangles[index];

@@ -64,9 +64,13 @@ Eigen::Vector3d least_step(const Gradients& gradients, const Values& change) {
 Eigen::Vector3d onto_common_surface(Leaves leaves, Eigen::Vector3d x) {
   Values values;
   Gradients gradients;
-  for (int step = 0; step < 60; ++step) {
+  double last_m = std::numeric_limits<double>::infinity();
+  for (int step = 0, setbacks = 0; step < 60; ++step) {
     evaluate(leaves, x, values, gradients);
-    if (values.isZero(0)) break;
+    const double size_m = values.norm();
+    if (size_m == 0) break;
+    if (size_m >= last_m && ++setbacks == 2) break;  // the first may be a bend, then it is rounding
+    last_m = size_m;
     const Eigen::Vector3d next = x - least_step(gradients, values);
     if (next == x || !next.allFinite()) return next;
     x = next;
@@ -86,7 +90,7 @@ Eigen::Vector3d nearest_common_point(Leaves leaves, const Eigen::Vector3d& x,
     evaluate(leaves, best, values, gradients);
     const Eigen::Vector3d offset = x - best;
     const Eigen::Vector3d tangential = offset - least_step(gradients, gradients * offset);
-    if (!(tangential.norm() > 1e-14 * best_m)) break;
+    if (!(tangential.norm() > 1e-10 * best_m)) break;  // the distance is right to its square
     const Eigen::Vector3d trial = onto_common_surface(leaves, best + stride * tangential);
     const double trial_m = (trial - x).norm();
     if (trial_m < best_m) {
@@ -153,6 +157,9 @@ class Search {
     offer(nearest_common_point(alone, x_, x_));
     for (const PlacedShape& part : blend->parts) {
       const PlacedShape placed{leaf.parent_from_leaf * part.parent_from_shape, part.shape};
+      // a part whose surface is farther than the best, fillet allowed for, cannot lead to a better
+      // one
+      if (std::abs(field(placed, x_).value_m) > best_m_ + blend->blend_m) continue;
       offer(nearest_common_point(alone, x_, closest_point(placed, x_)));
     }
   }

@@ -26,9 +26,9 @@ struct Scaled {
 Scaled centred_and_scaled(std::span<const Eigen::Vector3d> points, std::size_t least,
                           const char* shape) {
   if (points.size() < least)
-    throw Error(Trouble::computation, std::string(shape) + " fit: " +
-                                          std::to_string(points.size()) + " points, needs " +
-                                          std::to_string(least));
+    throw Error(Trouble::computation, std::string(shape) +
+                                          " fit: " + std::to_string(points.size()) +
+                                          " points, needs " + std::to_string(least));
   Scaled scaled{Eigen::MatrixX3d(points.size(), 3), points.front(), 0};
   for (std::size_t i = 0; i < points.size(); ++i)
     scaled.points.row(static_cast<Eigen::Index>(i)) = (points[i] - points.front()).transpose();
@@ -87,8 +87,8 @@ SphereFit fit_sphere(std::span<const Eigen::Vector3d> points) {
   }
   if (!converged || !(sphere(3) > 0)) throw_undetermined("sphere");
   return {scaled.centroid_m + scaled.scale_m * sphere.head<3>(), scaled.scale_m * sphere(3),
-          scaled.scale_m * std::sqrt(sphere_residuals(x, sphere).squaredNorm() /
-                                     static_cast<double>(x.rows()))};
+          scaled.scale_m *
+              std::sqrt(sphere_residuals(x, sphere).squaredNorm() / static_cast<double>(x.rows()))};
 }
 
 // The direction of least variance, by singular values rather than by the squared matrix.

@@ -63,8 +63,9 @@ Pose gauge(std::span<const Pose> estimated, std::span<const Pose> truth, PointLi
       covariance += (truth[i] * x - mean_b) * (estimated[i] * x - mean_a).transpose();
   const Eigen::Vector3d singular = Eigen::JacobiSVD<Eigen::Matrix3d>(covariance).singularValues();
   if (!(singular(1) > 1e-12 * singular(0)))
-    throw Error(Trouble::computation,
-                "pose error: the points of all scans lie on one line, which leaves a rotation free");
+    throw Error(
+        Trouble::computation,
+        "pose error: the points of all scans lie on one line, which leaves a rotation free");
   const Eigen::Matrix3d rotation = nearest_rotation(covariance);
   return make_pose(rotation, mean_b - rotation * mean_a);
 }
@@ -78,10 +79,10 @@ std::vector<PoseError> pose_errors(std::span<const Pose> estimated, std::span<co
     const Eigen::Vector3d c = centroid(points[i]);
     double sum_m2 = 0;
     for (const auto& x : points[i]) sum_m2 += (moved * x - truth[i] * x).squaredNorm();
-    errors.push_back({.rotation_rad = rotation_distance_rad(moved, truth[i]),
-                      .translation_m = (moved * c - truth[i] * c).norm(),
-                      .moved_points_rms_m =
-                          std::sqrt(sum_m2 / static_cast<double>(points[i].size()))});
+    errors.push_back(
+        {.rotation_rad = rotation_distance_rad(moved, truth[i]),
+         .translation_m = (moved * c - truth[i] * c).norm(),
+         .moved_points_rms_m = std::sqrt(sum_m2 / static_cast<double>(points[i].size()))});
   }
   return errors;
 }

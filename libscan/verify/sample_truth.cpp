@@ -48,18 +48,18 @@ Line random_line(const Ball& ball, RandomStream& random) {
   return {ball.centre + r * (std::cos(place) * u + std::sin(place) * v) - ball.radius_m * w, w};
 }
 
-// The zero of the field between two places of different sign, by bisection to rounding.
-double crossing(const PlacedShape& shape, const Line& line, double outside, double inside) {
-  for (int step = 0; step < 60; ++step) {
-    const double middle = (outside + inside) / 2;
-    const bool positive = field(shape, line.origin + middle * line.direction).value_m > 0;
-    (positive ? outside : inside) = middle;
+// Newton steps of a point that is within a least step, 1e-6 of the ball, of the surface: two reach
+// rounding and move it by no more than that.
+SurfaceSample onto_surface(const PlacedShape& shape, Eigen::Vector3d x) {
+  for (int step = 0; step < 2; ++step) {
+    const DistanceField f = field(shape, x);
+    x -= f.value_m / f.gradient.squaredNorm() * f.gradient;
   }
-  return (outside + inside) / 2;
+  return {x, field(shape, x).gradient.normalized(), 0};
 }
 
 // All crossings of a line with a solid. The field never exceeds the distance, so a step of its size
-// cannot skip a surface; the least step, a millionth of the ball, misses only shorter chords.
+// cannot skip a surface; the least step passes through it, and misses only shorter chords.
 void add_crossings(const PlacedShape& shape, const Ball& ball, const Line& line, Samples& samples) {
   const double least_m = 1e-6 * ball.radius_m;
   double t = 0, value_m = field(shape, line.origin).value_m;
@@ -67,9 +67,8 @@ void add_crossings(const PlacedShape& shape, const Ball& ball, const Line& line,
     const double next = t + std::max(std::abs(value_m), least_m);
     const double next_m = field(shape, line.origin + next * line.direction).value_m;
     if ((value_m > 0) != (next_m > 0)) {
-      const double at = value_m > 0 ? crossing(shape, line, t, next) : crossing(shape, line, next, t);
-      const Eigen::Vector3d point = line.origin + at * line.direction;
-      samples.push_back({point, field(shape, point).gradient.normalized(), 0});
+      const double zero = t + (next - t) * value_m / (value_m - next_m);  // secant
+      samples.push_back(onto_surface(shape, line.origin + zero * line.direction));
     }
     t = next;
     value_m = next_m;
@@ -107,13 +106,14 @@ Samples on_plane(const Pose& world_from_plane, const Bounds& region, const Reque
     shadow.extend(world_from_plane.inverse() *
                   region.corner(static_cast<Bounds::CornerType>(corner)));
   const Eigen::Vector3d sizes = shadow.sizes();
-  const auto count = static_cast<std::size_t>(std::llround(request.density * sizes.x() * sizes.y()));
+  const auto count =
+      static_cast<std::size_t>(std::llround(request.density * sizes.x() * sizes.y()));
   Samples samples;
   for (std::size_t i = 0; i < count; ++i) {
     RandomStream random(request.seed, request.stream, i);
     const double u = random.uniform(), v = random.uniform();
-    const Eigen::Vector3d in_plane(shadow.min().x() + u * sizes.x(), shadow.min().y() + v * sizes.y(),
-                                   0);
+    const Eigen::Vector3d in_plane(shadow.min().x() + u * sizes.x(),
+                                   shadow.min().y() + v * sizes.y(), 0);
     samples.push_back({world_from_plane * in_plane, world_from_plane.linear().col(2), 0});
   }
   return samples;

@@ -29,8 +29,8 @@ double root_mean_square(std::span<const double> values) {
 }
 
 double quantile(std::span<const double> values, double share) {
-  const bool undefined = std::any_of(values.begin(), values.end(),
-                                     [](double value) { return std::isnan(value); });
+  const bool undefined =
+      std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
   if (values.empty() || undefined) return not_a_number;
   std::vector<double> sorted(values.begin(), values.end());
   const double rank = std::ceil(share * static_cast<double>(sorted.size()));

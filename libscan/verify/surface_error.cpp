@@ -79,9 +79,8 @@ Bounds plane_region(const Measured& measured, const TrueSurface& truth,
   if (!options.seen_points.empty()) return bounds_of(options.seen_points);
   const bool any_bounded =
       !truth.meshes.empty() ||
-      std::any_of(truth.shapes.begin(), truth.shapes.end(), [](const PlacedShape& shape) {
-        return bounds_of(shape).sizes().allFinite();
-      });
+      std::any_of(truth.shapes.begin(), truth.shapes.end(),
+                  [](const PlacedShape& shape) { return bounds_of(shape).sizes().allFinite(); });
   return any_bounded ? Bounds() : measured.bounds;
 }
 
@@ -106,8 +105,8 @@ double default_threshold_m(const std::vector<SurfaceSample>& truth_samples) {
 }
 
 // Harmonic mean of precision and recall (Knapitsch et al. 2017, eq. 5).
-Measurement f_score(const std::vector<double>& accuracy_m, const std::vector<double>& completeness_m,
-                    double threshold_m) {
+Measurement f_score(const std::vector<double>& accuracy_m,
+                    const std::vector<double>& completeness_m, double threshold_m) {
   const double precision = share_within(accuracy_m, threshold_m);
   const double recall = share_within(completeness_m, threshold_m);
   const double sum = precision + recall;
@@ -128,10 +127,10 @@ std::vector<Measurement> compare(const Measured& measured, const TrueSurface& tr
   const auto completeness_m = completeness_of(measured, seen_only(truth_samples, options));
 
   auto figures = summary("accuracy", accuracy.errors_m, "m", measured.over);
-  const auto other_way = summary("completeness", completeness_m, "m",
-                                 options.seen_points.empty()
-                                     ? "samples of the true surface, uniform by area"
-                                     : "samples of the true surface near seen points");
+  const auto other_way =
+      summary("completeness", completeness_m, "m",
+              options.seen_points.empty() ? "samples of the true surface, uniform by area"
+                                          : "samples of the true surface near seen points");
   figures.insert(figures.end(), other_way.begin(), other_way.end());
   figures.push_back(f_score(accuracy.errors_m, completeness_m, threshold_m));
   if (!accuracy.normal_errors_rad.empty())
@@ -159,11 +158,10 @@ std::vector<Measurement> surface_error(const Mesh& mesh, const TrueSurface& trut
   check(mesh);
   if (mesh.empty()) throw Error(Trouble::input, "measured surface: no triangles");
   const MeshSearch search(mesh);
-  Measured measured{.distance_m = [&](const Eigen::Vector3d& x) {
-                      return search.closest(x).distance_m;
-                    },
-                    .over = "samples of the measured surface, uniform by area",
-                    .bounds = bounds_of(mesh.vertices)};
+  Measured measured{
+      .distance_m = [&](const Eigen::Vector3d& x) { return search.closest(x).distance_m; },
+      .over = "samples of the measured surface, uniform by area",
+      .bounds = bounds_of(mesh.vertices)};
   for (const SurfaceSample& sample : sample_surface(mesh, options.samples, options.seed)) {
     measured.points.push_back(sample.point);
     measured.normals.push_back(sample.normal);
@@ -178,15 +176,14 @@ std::vector<Measurement> cloud_error(const PointCloud& cloud, const TrueSurface&
   const PointCloud finite = subset(cloud, finite_points(cloud));
   if (finite.empty()) throw Error(Trouble::input, "measured cloud: no finite point");
   const KdTree search(finite.points);
-  return compare({.points = finite.points,
-                  .normals = finite.normals,
-                  .distance_m =
-                      [&](const Eigen::Vector3d& x) {
-                        return std::sqrt(search.nearest(x)->distance2_m2);
-                      },
-                  .over = "measured points",
-                  .bounds = bounds_of(finite.points)},
-                 truth, options);
+  return compare(
+      {.points = finite.points,
+       .normals = finite.normals,
+       .distance_m =
+           [&](const Eigen::Vector3d& x) { return std::sqrt(search.nearest(x)->distance2_m2); },
+       .over = "measured points",
+       .bounds = bounds_of(finite.points)},
+      truth, options);
 }
 
 }  // namespace scan

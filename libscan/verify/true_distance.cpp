@@ -68,10 +68,8 @@ struct TrueDistance::Parts : TrueSurfaceParts {
   using TrueSurfaceParts::TrueSurfaceParts;
 };
 
-TrueDistance::TrueDistance(const TrueSurface& surface)
-    : parts_(std::make_unique<Parts>(surface)) {
-  if (parts_->size() == 0)
-    throw Error(Trouble::input, "true surface: neither a shape nor a mesh");
+TrueDistance::TrueDistance(const TrueSurface& surface) : parts_(std::make_unique<Parts>(surface)) {
+  if (parts_->size() == 0) throw Error(Trouble::input, "true surface: neither a shape nor a mesh");
 }
 
 TrueDistance::~TrueDistance() = default;
@@ -93,9 +91,10 @@ Nearest TrueDistance::nearest(const Eigen::Vector3d& x) const {
   bool inside = false;
   for (const Candidate& candidate : list) {
     const bool shape = candidate.part < parts_->shapes.size();
-    inside = inside || (shape ? parts_->contains(candidate.part, x)
-                              : parts_->meshes[candidate.part - parts_->shapes.size()]->is_solid() &&
-                                    candidate.exact->signed_distance_m < 0);
+    inside =
+        inside || (shape ? parts_->contains(candidate.part, x)
+                         : parts_->meshes[candidate.part - parts_->shapes.size()]->is_solid() &&
+                               candidate.exact->signed_distance_m < 0);
   }
   const double distance_m = (x - found.point).norm();
   const bool behind = inside || found.signed_distance_m < 0;

@@ -46,8 +46,8 @@ bool holds(double value, const std::string& relation, double limit) {
 void check(const Limit& limit) {
   const std::string& r = limit.relation;
   if (r != "<=" && r != ">=" && r != "==")
-    throw Error(Trouble::input, "limit '" + limit.name + "': relation is '" + r +
-                                    "', must be '<=', '>=' or '=='");
+    throw Error(Trouble::input,
+                "limit '" + limit.name + "': relation is '" + r + "', must be '<=', '>=' or '=='");
   if (std::isnan(limit.value))
     throw Error(Trouble::input, "limit '" + limit.name + "': value is not a number");
 }

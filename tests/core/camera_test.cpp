@@ -13,8 +13,17 @@ namespace scan {
 namespace {
 
 Camera strong_barrel() {
-  return {.width_px = 640, .height_px = 480, .fx_px = 400, .fy_px = 410, .cx_px = 315.5,
-          .cy_px = 243.25, .k1 = -0.25, .k2 = 0.09, .p1 = 0.003, .p2 = -0.002, .k3 = -0.01};
+  return {.width_px = 640,
+          .height_px = 480,
+          .fx_px = 400,
+          .fy_px = 410,
+          .cx_px = 315.5,
+          .cy_px = 243.25,
+          .k1 = -0.25,
+          .k2 = 0.09,
+          .p1 = 0.003,
+          .p2 = -0.002,
+          .k3 = -0.01};
 }
 
 Camera strong_pincushion() {
@@ -68,8 +77,13 @@ TEST(Camera, SeesNothingBehindItself) {
 // With k1 alone r (1 + k1 r^2) folds at r = 1 / sqrt(-3 k1), where it is 2/3 of that: no ray leads
 // to a pixel beyond.
 TEST(Camera, HasNoRayBeyondTheFold) {
-  const Camera camera{.width_px = 640, .height_px = 480, .fx_px = 100, .fy_px = 100, .cx_px = 0,
-                      .cy_px = 0, .k1 = -0.3};
+  const Camera camera{.width_px = 640,
+                      .height_px = 480,
+                      .fx_px = 100,
+                      .fy_px = 100,
+                      .cx_px = 0,
+                      .cy_px = 0,
+                      .k1 = -0.3};
   const double fold = 1 / std::sqrt(0.9), limit_px = 100 * 2.0 / 3 * fold;
   EXPECT_TRUE(ray_through(camera, {0.99 * limit_px, 0}).has_value());
   EXPECT_FALSE(ray_through(camera, {1.01 * limit_px, 0}).has_value());

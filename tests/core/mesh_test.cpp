@@ -101,8 +101,9 @@ TEST(EdgeCensus, SeesATriangleTurnedOver) {
 }
 
 TEST(EdgeCensus, SeesTwoSolidsThatShareAVertex) {
-  Mesh mesh = together(tetrahedron(), transformed(make_pose(-Eigen::Matrix3d::Identity(), {0, 0, 0}),
-                                                  tetrahedron()));
+  Mesh mesh =
+      together(tetrahedron(),
+               transformed(make_pose(-Eigen::Matrix3d::Identity(), {0, 0, 0}), tetrahedron()));
   for (Triangle& t : mesh.triangles)
     for (std::uint32_t& v : t) v = v == 4 ? 0 : v;
   EXPECT_EQ(edge_census(mesh).non_manifold_vertices, 1u);

@@ -34,8 +34,7 @@ inline Mesh torus(double major, double minor, std::uint32_t around, std::uint32_
     for (std::uint32_t k = 0; k < across; ++k) {
       const double u = turn * i / around, v = turn * k / across;
       const double radius = major + minor * std::cos(v);
-      mesh.vertices.push_back(
-          {radius * std::cos(u), radius * std::sin(u), minor * std::sin(v)});
+      mesh.vertices.push_back({radius * std::cos(u), radius * std::sin(u), minor * std::sin(v)});
     }
   const auto id = [&](std::uint32_t i, std::uint32_t k) {
     return (i % around) * across + k % across;

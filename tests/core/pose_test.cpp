@@ -14,7 +14,7 @@ namespace scan {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double angles_rad[] = {0,   1e-300, 1e-12, 1e-8,      1e-5,      0.00999,   0.01001,
+constexpr double angles_rad[] = {0,   1e-300, 1e-12, 1e-8,      1e-5,      0.00999,  0.01001,
                                  0.5, 2,      3,     pi - 1e-3, pi - 1e-6, pi - 1e-9};
 
 Eigen::Vector3d unit_vector(RandomStream& random) {

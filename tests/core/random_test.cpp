@@ -17,7 +17,8 @@
 namespace scan {
 namespace {
 
-// Known answers of Philox4x32-10 from the authors' test vectors (Salmon et al. 2011, Random123 kat).
+// Known answers of Philox4x32-10 from the authors' test vectors (Salmon et al. 2011, Random123
+// kat).
 TEST(Philox, GivesThePublishedBlocks) {
   using Block = std::array<std::uint32_t, 4>;
   EXPECT_EQ(philox4x32({0, 0, 0, 0}, {0, 0}),

@@ -45,14 +45,15 @@ std::vector<Case> simple_cases() {
       {"plane", PlaneShape{}, [](const auto& x) { return x.z() < 0; }},
       {"sphere", SphereShape{0.7}, [](const auto& x) { return x.squaredNorm() < 0.49; }},
       {"cylinder", CylinderShape{0.4, 1.2},
+       [](const auto& x) { return x.x() * x.x() + x.y() * x.y() < 0.16 && std::abs(x.z()) < 0.6; }},
+      {"box", BoxShape{{1, 0.8, 0.6}, 0},
        [](const auto& x) {
-         return x.x() * x.x() + x.y() * x.y() < 0.16 && std::abs(x.z()) < 0.6;
+         return in_box(x, {1, 0.8, 0.6});
        }},
-      {"box", BoxShape{{1, 0.8, 0.6}, 0}, [](const auto& x) { return in_box(x, {1, 0.8, 0.6}); }},
       {"rounded box", BoxShape{{1, 0.8, 0.6}, 0.1},
        [](const auto& x) {
-         const Eigen::Vector3d core = x.cwiseMax(Eigen::Vector3d(-0.4, -0.3, -0.2))
-                                          .cwiseMin(Eigen::Vector3d(0.4, 0.3, 0.2));
+         const Eigen::Vector3d core =
+             x.cwiseMax(Eigen::Vector3d(-0.4, -0.3, -0.2)).cwiseMin(Eigen::Vector3d(0.4, 0.3, 0.2));
          return (x - core).squaredNorm() < 0.01;
        }},
       {"torus", TorusShape{0.6, 0.2},
@@ -97,9 +98,10 @@ std::vector<Case> combined_cases() {
 
 // Blends have no closed form of their inside other than the field itself.
 Shape filleted() {
-  return CombinedShape{Operation::unite, 0.1,
-                       {at(0, 0, 0, BoxShape{{1, 0.8, 0.3}, 0}),
-                        at(0, 0, 0.2, CylinderShape{0.2, 0.6})}};
+  return CombinedShape{
+      Operation::unite,
+      0.1,
+      {at(0, 0, 0, BoxShape{{1, 0.8, 0.3}, 0}), at(0, 0, 0.2, CylinderShape{0.2, 0.6})}};
 }
 
 std::vector<Case> all_cases() {
@@ -186,7 +188,8 @@ TEST(Field, KeepsItsValueUnderMotion) {
     const DistanceField local = field(c.shape, x);
     const DistanceField world = field(PlacedShape{world_from_shape, c.shape}, world_from_shape * x);
     EXPECT_NEAR(world.value_m, local.value_m, 1e-14) << c.name;
-    EXPECT_LT((world.gradient - world_from_shape.linear() * local.gradient).norm(), 1e-14) << c.name;
+    EXPECT_LT((world.gradient - world_from_shape.linear() * local.gradient).norm(), 1e-14)
+        << c.name;
   }
 }
 
@@ -239,8 +242,7 @@ void expect_closest(const std::string& name, const Shape& shape, double reach_m)
 }
 
 TEST(ClosestPoint, IsAsNearAsAnySurfacePoint) {
-  for (const Case& c : all_cases())
-    expect_closest(c.name, c.shape, 0.1);
+  for (const Case& c : all_cases()) expect_closest(c.name, c.shape, 0.1);
   expect_closest("filleted", filleted(), 0.1);
 }
 
@@ -248,9 +250,10 @@ TEST(ClosestPoint, IsAsNearAsAnySurfacePoint) {
 // every gradient is parallel; the nearest surface of the union is the seam (or, beyond the centres,
 // the far side of a sphere).
 TEST(ClosestPoint, OfAUnionIsNotBuriedOnItsAxis) {
-  const PlacedShape both{Pose::Identity(),
-                         CombinedShape{Operation::unite, 0, {at(-0.6, 0, 0, SphereShape{1}),
-                                                             at(0.6, 0, 0, SphereShape{1})}}};
+  const PlacedShape both{
+      Pose::Identity(),
+      CombinedShape{
+          Operation::unite, 0, {at(-0.6, 0, 0, SphereShape{1}), at(0.6, 0, 0, SphereShape{1})}}};
   for (const double x : {-0.4, -0.1, 0.0, 0.3, 0.4})
     EXPECT_NEAR((closest_point(both, {x, 0, 0}) - Eigen::Vector3d(x, 0, 0)).norm(),
                 std::min(std::hypot(x, 0.8), 1.6 - std::abs(x)), 1e-9)
@@ -265,16 +268,16 @@ TEST(ClosestPoint, FindsTheEdgeOfAWedge) {
       return PlacedShape{pose_of(0, side * (std::numbers::pi / 2 + half_angle), 0, 0, 0, 0),
                          PlaneShape{}};
     };
-    const PlacedShape wedge{Pose::Identity(),
-                            CombinedShape{Operation::intersect, 0, {half_space(1), half_space(-1)}}};
+    const PlacedShape wedge{
+        Pose::Identity(), CombinedShape{Operation::intersect, 0, {half_space(1), half_space(-1)}}};
     for (std::uint64_t i = 0; i < 300; ++i) {
       RandomStream random(8, 0, i);
       const Eigen::Vector3d x = point_in_cube(random, 1);
       // nearest on the face of the same side, whose direction from the edge is (sin, cos)
-      const double along = std::max(
-          0.0, std::abs(x.x()) * std::sin(half_angle) + x.z() * std::cos(half_angle));
-      const double expected =
-          std::hypot(std::abs(x.x()) - along * std::sin(half_angle), x.z() - along * std::cos(half_angle));
+      const double along =
+          std::max(0.0, std::abs(x.x()) * std::sin(half_angle) + x.z() * std::cos(half_angle));
+      const double expected = std::hypot(std::abs(x.x()) - along * std::sin(half_angle),
+                                         x.z() - along * std::cos(half_angle));
       const double found = (closest_point(wedge, x) - x).norm();
       EXPECT_NEAR(found, expected, 1e-9 * expected + 1e-15) << half_angle << " " << x.transpose();
     }

@@ -12,7 +12,8 @@
 
 namespace scan {
 
-inline const Measurement& measurement(const std::vector<Measurement>& all, const std::string& name) {
+inline const Measurement& measurement(const std::vector<Measurement>& all,
+                                      const std::string& name) {
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const Measurement& m) { return m.name == name; });
   if (found == all.end()) throw std::out_of_range("not measured: " + name);

@@ -119,8 +119,9 @@ TEST(FitPlane, IsExactForThreePoints) {
 TEST(FitPlane, RefusesPointsThatDoNotTell) {
   EXPECT_THROW(fit_plane(Points{{1, 0, 0}, {0, 1, 0}}), Error);
   EXPECT_THROW(fit_plane(Points{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}), Error);
-  EXPECT_THROW(fit_plane(Points{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}),
-               Error);
+  EXPECT_THROW(
+      fit_plane(Points{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}),
+      Error);
 }
 
 }  // namespace

@@ -133,8 +133,10 @@ TEST(Gauge, IsALeastSquaresMinimum) {
 TEST(PoseErrors, AreAccurateFarFromTheOrigin) {
   const Pose far = make_pose(Eigen::Matrix3d::Identity(), {1e6, -2e6, 5e5});
   const std::vector<Pose> truth(2, far);
-  const std::vector<Pose> estimated{far, make_pose(Eigen::Matrix3d::Identity(), {0.04, 0, 0}) * far};
-  const auto errors = pose_errors(estimated, truth, std::vector<Points>{octahedron(), octahedron()});
+  const std::vector<Pose> estimated{far,
+                                    make_pose(Eigen::Matrix3d::Identity(), {0.04, 0, 0}) * far};
+  const auto errors =
+      pose_errors(estimated, truth, std::vector<Points>{octahedron(), octahedron()});
   EXPECT_NEAR(errors[0].translation_m, 0.02, 2e-9);
   EXPECT_LT(errors[0].rotation_rad, 1e-8);
 }

@@ -20,15 +20,16 @@ Mesh rectangle(double width, double height, double z) {
   return {{{0, 0, z}, {width, 0, z}, {width, height, z}, {0, height, z}}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-TrueSurface unit_square() { return {{}, {rectangle(1, 1, 0)}}; }
+TrueSurface unit_square() {
+  return {{}, {rectangle(1, 1, 0)}};
+}
 
 TEST(SurfaceError, OfAShiftedSquareIsTheShift) {
-  const auto figures =
-      surface_error(rectangle(1, 1, 0.01), unit_square(),
-                    {.samples = 5000, .f_score_threshold_m = 0.011});
-  for (const char* name : {"accuracy_mean", "accuracy_rms", "accuracy_p95", "accuracy_max",
-                           "completeness_mean", "completeness_rms", "completeness_p95",
-                           "completeness_max"})
+  const auto figures = surface_error(rectangle(1, 1, 0.01), unit_square(),
+                                     {.samples = 5000, .f_score_threshold_m = 0.011});
+  for (const char* name :
+       {"accuracy_mean", "accuracy_rms", "accuracy_p95", "accuracy_max", "completeness_mean",
+        "completeness_rms", "completeness_p95", "completeness_max"})
     EXPECT_NEAR(figure(figures, name), 0.01, 1e-14) << name;
   EXPECT_EQ(figure(figures, "f_score"), 1);
   EXPECT_NEAR(figure(figures, "normal_error_mean"), 0, 1e-15);

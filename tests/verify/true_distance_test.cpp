@@ -46,8 +46,8 @@ TEST(TrueDistance, HasTheSideOfAnOpenMesh) {
 
 TEST(TrueDistance, OfSeparateObjectsIsTheSmaller) {
   const TrueDistance distance(
-      TrueSurface{{at({0, 0, 0}, SphereShape{0.5})}, {transformed(make_pose(
-                       Eigen::Matrix3d::Identity(), {2, 0, 0}), cube(1))}});
+      TrueSurface{{at({0, 0, 0}, SphereShape{0.5})},
+                  {transformed(make_pose(Eigen::Matrix3d::Identity(), {2, 0, 0}), cube(1))}});
   EXPECT_NEAR(distance.nearest({0.8, 0, 0}).signed_distance_m, 0.3, 1e-15);
   EXPECT_NEAR(distance.nearest({1.9, 0.5, 0.5}).signed_distance_m, 0.1, 1e-15);
   EXPECT_NEAR(distance.nearest({2.5, 0.5, 0.9}).signed_distance_m, -0.1, 1e-15);
@@ -56,8 +56,8 @@ TEST(TrueDistance, OfSeparateObjectsIsTheSmaller) {
 // Two spheres of radius 1 at x = -0.6 and 0.6 meet in the circle x = 0 of radius 0.8. In the middle
 // the nearest surface of either is buried in the other; the union's nearest is the seam.
 TEST(TrueDistance, IgnoresBuriedSurface) {
-  const TrueSurface union_of_two{{at({-0.6, 0, 0}, SphereShape{1}), at({0.6, 0, 0}, SphereShape{1})},
-                                 {}};
+  const TrueSurface union_of_two{
+      {at({-0.6, 0, 0}, SphereShape{1}), at({0.6, 0, 0}, SphereShape{1})}, {}};
   const TrueDistance distance(union_of_two);
   const auto middle = distance.nearest({0.01, 0.1, 0});
   EXPECT_NEAR(middle.signed_distance_m, -std::hypot(0.01, 0.7), 1e-9);
@@ -67,12 +67,13 @@ TEST(TrueDistance, IgnoresBuriedSurface) {
   EXPECT_NEAR(distance.nearest({-1.7, 0, 0}).signed_distance_m, 0.1, 1e-15);
 }
 
-// No sample of the visible surface is nearer than what is reported, and the reported point is on it.
+// No sample of the visible surface is nearer than what is reported, and the reported point is on
+// it.
 TEST(TrueDistance, IsAsNearAsAnySample) {
-  const TrueSurface scene{{at({0, 0, 0}, PlaneShape{}), at({0, 0, 0.2}, SphereShape{0.5}),
-                           at({0.6, 0, 0.1}, BoxShape{{0.4, 0.6, 0.5}, 0})},
-                          {transformed(make_pose(Eigen::Matrix3d::Identity(), {-1.2, -0.5, -0.1}),
-                                       cube(0.5))}};
+  const TrueSurface scene{
+      {at({0, 0, 0}, PlaneShape{}), at({0, 0, 0.2}, SphereShape{0.5}),
+       at({0.6, 0, 0.1}, BoxShape{{0.4, 0.6, 0.5}, 0})},
+      {transformed(make_pose(Eigen::Matrix3d::Identity(), {-1.2, -0.5, -0.1}), cube(0.5))}};
   const TrueDistance distance(scene);
   const auto samples = sample_truth(scene, 20'000, 3);
   for (std::uint64_t i = 0; i < 500; ++i) {
@@ -92,7 +93,9 @@ TEST(TrueDistance, IsAccurateFarFromTheOrigin) {
   EXPECT_NEAR(distance.nearest(far + Eigen::Vector3d(0, 0, 1.25)).signed_distance_m, 0.25, 1e-9);
 }
 
-TEST(TrueDistance, RefusesAnEmptySurface) { EXPECT_THROW(TrueDistance(TrueSurface{}), Error); }
+TEST(TrueDistance, RefusesAnEmptySurface) {
+  EXPECT_THROW(TrueDistance(TrueSurface{}), Error);
+}
 
 TEST(Deviations, AreSignedAndKeepWhatIsNotFinite) {
   const TrueSurface sphere{{at({0, 0, 0}, SphereShape{1})}, {}};

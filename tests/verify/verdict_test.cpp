@@ -57,7 +57,9 @@ TEST(Verdict, ListsAMeasurementOncePerLimit) {
   EXPECT_FALSE(verdict.pass);
 }
 
-TEST(Verdict, WithoutLimitsPasses) { EXPECT_TRUE(judge(measured(1e9), {}).pass); }
+TEST(Verdict, WithoutLimitsPasses) {
+  EXPECT_TRUE(judge(measured(1e9), {}).pass);
+}
 
 TEST(Verdict, RefusesAnUnmeasuredNameWithAHint) {
   try {
