@@ -6,7 +6,7 @@
 
 #include "libscan/align/multiview.h"
 #include "libscan/core/error.h"
-#include "tools/json_output.h"
+#include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "tools/commands.h"
@@ -85,7 +85,7 @@ int align_files(const Arguments& arguments, Console& console) {
   const MultiviewOptions options = options_from(arguments);
   const MultiviewResult result = align_scans(clouds, first, options, console.progress());
   console.time("align", result.cost.seconds);
-  const auto json = alignment_json(result, inputs, options.icp);
+  const auto json = alignment_json(inputs, result, options.icp);
   write_results(output, inputs, scans, result, json);
 
   bool complete = true;

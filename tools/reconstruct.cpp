@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
-#include "tools/json_output.h"
+#include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "tools/commands.h"
@@ -44,7 +44,7 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
 
   const SurfaceResult result = make_surface(joined(scans, poses), settings, console);
   write_mesh(output, result.surface);
-  const auto json = surface_json(result, arguments.method, settings.ssd.depth);
+  const auto json = surface_json(arguments.method, depth_of(settings), result);
   console.say(output + ": " + std::to_string(result.surface.vertices.size()) + " vertices, " +
               std::to_string(result.surface.triangles.size()) + " triangles, " +
               std::to_string(json.at("components").get<int>()) + " components, " +

@@ -5,7 +5,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
-#include "tools/json_output.h"
+#include "libscan/io/json_output.h"
 #include "tools/commands.h"
 #include "tools/run_session.h"
 #include "tools/run_stages.h"

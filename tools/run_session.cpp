@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/run_session.h"
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
-#include "libscan/io/json_reader.h"
-#include "tools/json_output.h"
+#include "libscan/io/json_output.h"
 #include "tools/run_files.h"
 #include "tools/run_stages.h"
+#include "tools/version.h"
 
 namespace scan {
 namespace {
@@ -19,62 +20,36 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-// What each stage leaves behind. timings.json belongs to none: it alone may differ between equal runs.
+// What each stage leaves behind, as files or folders. timings.json belongs to none: it alone may differ
+// between equal runs.
 const std::map<std::string, std::vector<std::string>> stage_outputs = {
     {"simulate", {"effects.json", "scans", "truth", "raw"}},
     {"align", {"alignment.json", "poses.tum"}},
     {"reconstruct", {"surface.ply", "reconstruction.json"}},
     {"verify", {"verdict.json"}},
     {"report", {"report.html"}}};
-const std::vector<std::string> own_files = {"recipe.json", "stages.json", "timings.json"};
 
-bool holds_run(const fs::path& folder) {
-  return fs::exists(folder / "recipe.json") && fs::exists(folder / "stages.json");
+RunFolder open_folder(const fs::path& run, const RunSettings& settings, const std::string& recipe) {
+  if (settings.resume && !settings.force && fs::exists(recipe_path(run)) &&
+      read_file(recipe_path(run)) != recipe)
+    throw Error(Trouble::input, run.string() + ": holds a run of another recipe",
+                "--force replaces it");
+  return open_run_folder(run, settings.force    ? RunStart::force
+                              : settings.resume ? RunStart::resume
+                                                : RunStart::fresh);
 }
 
-// Removes what a run wrote and nothing else.
-void clear_run(const fs::path& folder) {
-  std::error_code error;
-  for (const auto& [stage, outputs] : stage_outputs)
-    for (const std::string& output : outputs) fs::remove_all(folder / output, error);
-  for (const std::string& file : own_files) fs::remove(folder / file, error);
-}
-
-void open_folder(const fs::path& run, const RunSettings& settings, const std::string& recipe) {
-  std::error_code error;
-  if (fs::exists(run) && !fs::is_directory(run))
-    throw Error(Trouble::output, run.string() + ": is a file, a run needs a folder");
-  const bool occupied = fs::is_directory(run) && !fs::is_empty(run, error);
-  if (occupied && !holds_run(run))
-    throw Error(Trouble::output, run.string() + ": is not empty and holds no run",
-                "give a new or empty folder");
-  if (occupied && settings.force) {
-    clear_run(run);
-  } else if (occupied && settings.resume) {
-    if (read_file(run / "recipe.json") != recipe)
-      throw Error(Trouble::input, run.string() + ": holds a run of another recipe",
-                  "--force replaces it");
-  } else if (occupied) {
-    throw Error(Trouble::output, run.string() + ": holds an earlier run",
-                "--resume continues it, --force replaces it");
-  }
-  fs::create_directories(run, error);
-  if (error) throw Error(Trouble::output, run.string() + ": " + error.message());
-}
-
-// Fingerprint over names and bytes of a stage's outputs, in the order of their names.
-std::string outputs_fingerprint(const fs::path& run, const std::string& stage) {
-  std::map<std::string, fs::path> files;
+// The files of a stage that are there, relative to the folder.
+std::vector<std::string> output_files(const fs::path& run, const std::string& stage) {
+  std::vector<std::string> files;
   for (const std::string& output : stage_outputs.at(stage)) {
-    const fs::path path = run / output;
-    if (fs::is_regular_file(path)) files[output] = path;
-    if (!fs::is_directory(path)) continue;
-    for (const auto& entry : fs::recursive_directory_iterator(path))
-      if (entry.is_regular_file()) files[fs::relative(entry.path(), run).string()] = entry.path();
+    if (fs::is_regular_file(run / output)) files.push_back(output);
+    if (!fs::is_directory(run / output)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(run / output))
+      if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), run).string());
   }
-  std::string all;
-  for (const auto& [name, path] : files) all += name + " " + fingerprint(read_file(path)) + "\n";
-  return fingerprint(all);
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 ordered_json read_or_empty(const fs::path& path) {
@@ -117,16 +92,13 @@ RunSession::RunSession(const fs::path& recipe, const fs::path& run, const RunSet
                        Console& console)
     : run_(run), recipe_(adjusted(read_recipe(recipe), settings)), console_(console) {
   const std::string as_run = json_text(to_json(recipe_));
-  open_folder(run_, settings, as_run);
+  folder_ = open_folder(run_, settings, as_run);
   write_file(recipe_path(run_), as_run);
-  if (!fs::exists(run_ / "stages.json")) write_json(run_ / "stages.json", ordered_json::object());
+  inputs_ = fingerprint(as_run + version_text() + (settings.keep_raw ? " raw" : ""));
 }
 
 void RunSession::stage(const std::string& name, const Work& work) {
-  ordered_json stages = read_or_empty(run_ / "stages.json");
-  const bool done = all_done_so_far_ && stages.value(name, "") == outputs_fingerprint(run_, name);
-  if (done) return console_.log(name + ": already done");
-  all_done_so_far_ = false;
+  if (is_done(folder_, name, inputs_)) return console_.log(name + ": already done");
   const Stopwatch watch;
   work(run_, recipe_);
   const double seconds = watch.seconds();
@@ -137,8 +109,7 @@ void RunSession::stage(const std::string& name, const Work& work) {
   ordered_json timings = read_or_empty(run_ / "timings.json");
   for (const auto& [step, value] : console_.seconds()) timings[step] = value;
   write_json(run_ / "timings.json", timings);
-  stages[name] = outputs_fingerprint(run_, name);
-  write_json(run_ / "stages.json", stages);
+  record_stage(folder_, name, inputs_, output_files(run_, name));
 }
 
 int RunSession::finish(const std::string& command) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "libscan/io/run_folder.h"
 #include "tools/command_line.h"
 #include "tools/recipe.h"
 
@@ -24,16 +25,14 @@ void declare_run_settings(CommandLine& line, RunSettings& settings);
 class RunSession {
  public:
   // Reads the recipe, applies the settings, and opens the folder `run`:
-  // - new or empty: it is made;
-  // - it holds an earlier run: refused, unless --force clears that run's files or --resume continues
-  //   it (then the recipe must be the same);
-  // - it holds anything else: refused.
+  // one that holds an earlier run is refused, unless --force clears that run's files or --resume
+  // continues it (then the recipe must be the same).
   // Writes recipe.json with all defaults filled in.
   RunSession(const std::filesystem::path& recipe, const std::filesystem::path& run,
              const RunSettings& settings, Console& console);
 
-  // Runs a stage unless stages.json records it as done and its outputs are there unchanged. A stage
-  // behind one that ran is always run again.
+  // Runs a stage unless it is recorded as done and its outputs are there unchanged. A stage behind one
+  // that ran is always run again.
   using Work = std::function<void(const std::filesystem::path& run, const Recipe& recipe)>;
   void stage(const std::string& name, const Work& work);
 
@@ -44,7 +43,8 @@ class RunSession {
   std::filesystem::path run_;
   Recipe recipe_;
   Console& console_;
-  bool all_done_so_far_ = true;
+  RunFolder folder_;
+  std::string inputs_;  // fingerprint of what decides every stage's output
 };
 
 }  // namespace scan

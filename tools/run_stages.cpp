@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
-#include "tools/json_output.h"
+#include "libscan/io/json_output.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
@@ -59,7 +59,7 @@ void align_run(const std::filesystem::path& run, const Recipe& recipe, Console& 
   for (std::size_t i = 0; i < scans.size(); ++i)
     poses.push_back({scan_name(i), result.scans[i].world_from_scan});
   write_json(run / "alignment.json",
-             alignment_json(result, scan_files(scans.size()), recipe.align.icp));
+             alignment_json(scan_files(scans.size()), result, recipe.align.icp));
   write_poses_tum(run / "poses.tum", poses);
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const ScanPose& pose = result.scans[i];
@@ -77,8 +77,8 @@ void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Con
       make_surface(joined(read_run_scans(run), read_run_poses(run)), recipe.reconstruct, console);
   write_mesh(run / "surface.ply", result.surface);
   write_json(run / "reconstruction.json",
-             surface_json(result, std::string(name_of(recipe.reconstruct.method)),
-                          recipe.reconstruct.ssd.depth));
+             surface_json(std::string(name_of(recipe.reconstruct.method)),
+                          depth_of(recipe.reconstruct), result));
 }
 
 Verdict verify_run(const std::filesystem::path& run, Console&) {
@@ -121,7 +121,7 @@ void say_verdict(const ordered_json& verdict, const Console& console) {
     std::snprintf(line, sizeof line, "  %-28s %12s", m.at("name").get<std::string>().c_str(),
                   readable(m.at("value"), unit).c_str());
     std::string text = line;
-    if (!m.at("relation").get<std::string>().empty())
+    if (!m.at("limit").is_null())
       text += std::string("   ") + (m.at("pass").get<bool>() ? "pass" : "FAIL") + " (" +
               m.at("relation").get<std::string>() + " " + readable(m.at("limit"), unit) + ")";
     console.say(text);

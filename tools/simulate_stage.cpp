@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
-#include "tools/json_output.h"
+#include "libscan/io/json_output.h"
 #include "libscan/io/raw_files.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/truth_file.h"

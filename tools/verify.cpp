@@ -6,7 +6,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/io/image_file.h"
-#include "tools/json_output.h"
+#include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/truth_file.h"
