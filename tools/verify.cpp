@@ -80,10 +80,17 @@ void write_picture(const std::string& path, const Mesh& mesh, const TrueSurface&
   write_png(path, contact_sheet(six_views(mesh, deviations, deviation_limit_m(deviations), 400)));
 }
 
+std::vector<Measurement> measure_disparity(const Arguments& arguments) {
+  const Image<float> measured = read_float_image(arguments.measured);
+  const Image<float> truth = read_float_image(arguments.truth);
+  auto measurements = disparity_error(measured, truth, arguments.doffs_px);
+  if (!arguments.picture.empty())
+    write_png(arguments.picture, disparity_sheet(measured, truth));
+  return measurements;
+}
+
 std::vector<Measurement> measure_files(const Arguments& arguments) {
-  if (is_disparity(arguments.measured))
-    return disparity_error(read_float_image(arguments.measured), read_float_image(arguments.truth),
-                           arguments.doffs_px);
+  if (is_disparity(arguments.measured)) return measure_disparity(arguments);
   const TrueSurface truth = read_true_surface(arguments.truth);
   const SurfaceErrorOptions options{.f_score_threshold_m = arguments.threshold_m};
   std::vector<Measurement> measurements;
@@ -139,7 +146,7 @@ Action verify_command(CommandLine& line) {
   line.number("--doffs", arguments->doffs_px, -1e6, 1e6,
               "disparity: difference of the principal points in px, for the depth error");
   line.option("--limits", arguments->limits, "JSON list of limits, as in a recipe");
-  line.option("--picture", arguments->picture, "meshes: six views coloured by deviation (.png)");
+  line.option("--picture", arguments->picture, "six views coloured by deviation; disparity: it, the truth, the error (.png)");
   return [arguments](Console& console) { return verify(*arguments, console); };
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libscan/core/parallel.h"
 #include "synth/ray_caster.h"
@@ -111,6 +112,34 @@ double deviation_limit_m(std::vector<double> sizes) {
   const auto place = sizes.begin() + static_cast<long>(0.99 * static_cast<double>(sizes.size() - 1));
   std::nth_element(sizes.begin(), place, sizes.end());
   return std::max(*place, 1e-12);
+}
+
+Image<Colour> disparity_sheet(const Image<float>& measured, const Image<float>& truth) {
+  constexpr Colour unknown = {70, 80, 110};
+  constexpr double error_limit_px = 2;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const float d : truth.pixels) {
+    if (!std::isfinite(d)) continue;
+    least = std::min<double>(least, d);
+    most = std::max<double>(most, d);
+  }
+  const auto grey = [&](float d) {
+    if (!std::isfinite(d)) return unknown;
+    const double share = std::clamp((d - least) / (most - least), 0.0, 1.0);
+    const auto level = static_cast<std::uint8_t>(std::lround(20 + 235 * share));
+    return Colour{level, level, level};
+  };
+  Image<Colour> sheet(3 * truth.width, truth.height);
+  for (int row = 0; row < truth.height; ++row)
+    for (int column = 0; column < truth.width; ++column) {
+      const float d = measured(column, row), t = truth(column, row);
+      sheet(column, row) = grey(d);
+      sheet(truth.width + column, row) = grey(t);
+      sheet(2 * truth.width + column, row) = std::isfinite(d - t)
+                                                 ? diverging_colour((d - t) / error_limit_px)
+                                                 : unknown;
+    }
+  return sheet;
 }
 
 Image<Colour> contact_sheet(const std::vector<View>& views) {

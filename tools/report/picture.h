@@ -25,6 +25,10 @@ std::vector<View> six_views(const Mesh& mesh, const std::vector<double>& values,
 // The scale that holds 99 % of the finite deviations; 1 m for none.
 double deviation_limit_m(std::vector<double> deviations_m);
 
+// A disparity image, the truth, and their difference on a scale of +-2 px, side by side. The first two
+// run from dark (far) to bright (near) over the truth's range; unknown pixels are blue-grey.
+Image<Colour> disparity_sheet(const Image<float>& measured, const Image<float>& truth);
+
 // The views side by side, three in a row.
 Image<Colour> contact_sheet(const std::vector<View>& views);
 
