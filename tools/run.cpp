@@ -3,8 +3,6 @@
 // scan run: all stages of a recipe.
 #include <nlohmann/json.hpp>
 
-#include "libscan/core/error.h"
-#include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
 #include "tools/commands.h"
 #include "tools/run_session.h"
@@ -33,9 +31,7 @@ Action run_command(CommandLine& line) {
       reconstruct_run(run, recipe, console);
     });
     session.stage("verify", [&](const auto& run, const Recipe&) { verify_run(run, console); });
-    session.stage("report", [&](const auto& run, const Recipe&) {
-      write_file(run / "report.html", report_run(run));
-    });
+    session.report();
     return session.finish("run");
   };
 }

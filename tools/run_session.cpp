@@ -26,8 +26,7 @@ const std::map<std::string, std::vector<std::string>> stage_outputs = {
     {"simulate", {"effects.json", "scans", "truth", "raw"}},
     {"align", {"alignment.json", "poses.tum"}},
     {"reconstruct", {"surface.ply", "reconstruction.json"}},
-    {"verify", {"verdict.json"}},
-    {"report", {"report.html"}}};
+    {"verify", {"verdict.json"}}};
 
 RunFolder open_folder(const fs::path& run, const RunSettings& settings, const std::string& recipe) {
   if (settings.resume && !settings.force && fs::exists(recipe_path(run)) &&
@@ -99,6 +98,7 @@ RunSession::RunSession(const fs::path& recipe, const fs::path& run, const RunSet
 
 void RunSession::stage(const std::string& name, const Work& work) {
   if (is_done(folder_, name, inputs_)) return console_.log(name + ": already done");
+  a_stage_ran_ = true;
   const Stopwatch watch;
   work(run_, recipe_);
   const double seconds = watch.seconds();
@@ -110,6 +110,12 @@ void RunSession::stage(const std::string& name, const Work& work) {
   for (const auto& [step, value] : console_.seconds()) timings[step] = value;
   write_json(run_ / "timings.json", timings);
   record_stage(folder_, name, inputs_, output_files(run_, name));
+}
+
+void RunSession::report() {
+  const fs::path page = run_ / "report.html";
+  if (!a_stage_ran_ && fs::exists(page)) return;
+  write_file(page, report_run(run_));
 }
 
 int RunSession::finish(const std::string& command) {

@@ -36,6 +36,10 @@ class RunSession {
   using Work = std::function<void(const std::filesystem::path& run, const Recipe& recipe)>;
   void stage(const std::string& name, const Work& work);
 
+  // Writes report.html unless it is there and no stage ran. It is no recorded stage: it shows seconds,
+  // and stages.json is the same for equal runs.
+  void report();
+
   // Prints the results that the folder holds; the exit code is 1 if there is a verdict that fails.
   int finish(const std::string& command);
 
@@ -43,6 +47,7 @@ class RunSession {
   std::filesystem::path run_;
   Recipe recipe_;
   Console& console_;
+  bool a_stage_ran_ = false;
   RunFolder folder_;
   std::string inputs_;  // fingerprint of what decides every stage's output
 };
