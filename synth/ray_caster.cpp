@@ -32,11 +32,8 @@ struct Query {
     if (std::abs(gap) <= same_m ? lower : gap < 0) best = hit;
   }
 
-  // Where the float ray may end: never in front of the best hit nor of its equals.
-  float tree_limit() const {
-    const double t = best.distance_m - tree_start_m;
-    return static_cast<float>(t + 4 * float_epsilon * (std::abs(t) + std::abs(tree_start_m)));
-  }
+  // Where the float ray may end; its rounding is covered by the boxes' margin.
+  float tree_limit() const { return static_cast<float>(best.distance_m - tree_start_m); }
 };
 
 const Solid& solid_of(const void* user_data) {
@@ -159,8 +156,6 @@ std::optional<RTCRay> RayCaster::Device::enter_tree(Query& query) const {
   const Eigen::Vector3f start =
       (query.ray.origin + span->enter_m * query.ray.direction).cast<float>();
   const Eigen::Vector3f direction = query.ray.direction.cast<float>();
-  const double length =
-      span->leave_m - span->enter_m + bounds.diagonal().norm() * float_epsilon * 16;
   RTCRay ray{};
   ray.org_x = start.x();
   ray.org_y = start.y();
@@ -168,7 +163,7 @@ std::optional<RTCRay> RayCaster::Device::enter_tree(Query& query) const {
   ray.dir_x = direction.x();
   ray.dir_y = direction.y();
   ray.dir_z = direction.z();
-  ray.tfar = static_cast<float>(length);
+  ray.tfar = static_cast<float>(span->leave_m - span->enter_m);
   ray.mask = ~0u;
   return ray;
 }

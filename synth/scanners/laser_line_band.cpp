@@ -16,7 +16,8 @@ namespace scan::synth {
 namespace {
 
 constexpr double near_px = 3;  // neighbours so close need no ray between them
-constexpr int margin_px = 2;
+constexpr int margin_px =
+    2;  // what four such neighbours enclose is at most 1.5 px from their sides
 constexpr int halvings = 10;
 
 struct Band {

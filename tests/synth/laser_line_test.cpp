@@ -8,47 +8,10 @@
 #include <numbers>
 #include <set>
 
-#include "libscan/core/random.h"
-#include "scanner_scenes.h"
-#include "synth/scanners/laser_line_optics.h"
+#include "laser_bench.h"
 
 namespace scan::synth {
 namespace {
-
-constexpr double theta = 0.5;
-
-LaserLine small_laser() {
-  return {.camera = {160, 120, 300, 300, 79.5, 59.5},
-          .baseline_m = 0.1,
-          .triangulation_rad = theta,
-          .fan_rad = 0.8,
-          .steps = 1,
-          .sensor = {}};
-}
-
-double focus_z(const LaserLine& s) {
-  return s.baseline_m / std::tan(s.triangulation_rad);
-}
-
-Scene white_scene(std::vector<Object> objects) {
-  return {std::move(objects), {plain(1)}};
-}
-
-// A camera at the world's origin with its sheet.
-struct Bench {
-  LaserLine scanner;
-  LaserSheet sheet;
-  RayCaster caster;
-  LaserView view;
-  Bench(const LaserLine& s, const Scene& scene)
-      : scanner(s),
-        sheet(laser_sheet(scanner)),
-        caster(scene),
-        view{scanner, sheet, caster, Pose::Identity()} {}
-  double electrons(double column, double row) const {
-    return view.electrons(*ray_through(scanner.camera, {column, row}));
-  }
-};
 
 TEST(LaserSheet, HoldsTheLaserTheFocusAndTheCamerasYAxis) {
   const LaserLine s = small_laser();
@@ -197,101 +160,6 @@ TEST(LaserImages, MissNoLightOutsideTheTracedBand) {
     EXPECT_EQ(outside, 0) << object.name;
     EXPECT_LT(traced, 160 * 120 / 4) << object.name;
   }
-}
-
-std::vector<RayTruth> truth_of(const LaserLine& s, const Scene& scene) {
-  return true_rays(s, RayCaster(scene), Pose::Identity());
-}
-
-TEST(LaserTruth, LiesOnSurfaceLightPlaneAndRow) {
-  LaserLine s = small_laser();
-  s.camera.k1 = -0.2;
-  s.camera.p1 = 0.01;
-  s.steps = 9;
-  s.step_m = 5e-3;
-  const Eigen::Vector3d centre(0, 0, 0.18);
-  const double radius = 0.03;
-  const auto rays = truth_of(s, white_scene({sphere_at(centre, radius)}));
-  const auto poses = scanner_from_camera(s);
-  const LaserSheet sheet = laser_sheet(s);
-  int hits = 0;
-  for (int step = 0; step < s.steps; ++step)
-    for (int row = 0; row < 120; ++row) {
-      const RayTruth& ray = rays[step * 120 + row];
-      if (ray.object < 0) continue;
-      ++hits;
-      const Eigen::Vector3d x = poses[step].inverse() * ray.point_in_scanner;
-      EXPECT_NEAR(sheet.normal.dot(x) - sheet.offset_m, 0, 1e-15);
-      EXPECT_NEAR((ray.point_in_scanner - centre).norm(), radius, 1e-14);
-      EXPECT_NEAR((ray.normal_in_scanner - (ray.point_in_scanner - centre) / radius).norm(), 0,
-                  1e-12);
-      // on_row's own limit, and its looser one where the surface turns away from the light
-      EXPECT_NEAR(project(s.camera, x)->y(), row, 1e-8);
-      EXPECT_LT((ray.point_in_scanner - centre).dot(x), 0.01 * radius) << "it faces the camera";
-    }
-  EXPECT_GT(hits, 300);
-}
-
-// Against a search along each image row: views whose points change sides of the light plane.
-TEST(LaserTruth, EqualsTheSearchAlongTheRow) {
-  LaserLine s = small_laser();
-  const Object body{"bud", exp((Vector6() << 0.5, 0.4, 0.3, 0, 0, 0.2).finished()), bud(), 0};
-  const Bench bench(s, white_scene({body, plane_at(0.25)}));
-  const auto rays = true_rays(s, bench.caster, Pose::Identity());
-  int found = 0, different = 0;
-  for (int row = 0; row < 120; row += 3) {
-    std::optional<Eigen::Vector3d> nearest;
-    const auto offset_at = [&](double column, Hit* seen) -> double {
-      const Eigen::Vector3d view = ray_through(s.camera, {column, double(row)})->normalized();
-      const auto hit = bench.caster.closest({0, 0, 0}, view);
-      *seen = facing(*hit, view);
-      return bench.sheet.normal.dot(hit->point) - bench.sheet.offset_m;
-    };
-    Hit before, after;
-    double before_m = offset_at(0, &before);
-    for (double column = 0.1; column <= 159; column += 0.1) {
-      const double after_m = offset_at(column, &after);
-      if ((before_m < 0) != (after_m < 0)) {
-        double low = column - 0.1, high = column;
-        Hit middle;
-        for (int i = 0; i < 60; ++i) {
-          const double half = (low + high) / 2;
-          const double m = offset_at(half, &middle);
-          ((m < 0) == (before_m < 0) ? low : high) = half;
-        }
-        const double rest = std::abs(offset_at(low, &middle));
-        if (rest < 1e-9 && !bench.caster.occluded(middle, bench.sheet.origin) &&
-            (!nearest || middle.point.norm() < nearest->norm()))
-          nearest = middle.point;
-      }
-      before_m = after_m;
-    }
-    const bool is_same = nearest.has_value() == (rays[row].object >= 0) &&
-                         (!nearest || (*nearest - rays[row].point_in_scanner).norm() < 1e-10);
-    found += nearest.has_value();
-    different += !is_same;
-  }
-  EXPECT_GT(found, 30);
-  EXPECT_EQ(different, 0);
-}
-
-// The brightest place of each rendered row is where the truth says.
-TEST(LaserTruth, StandsInTheMiddleOfTheRenderedStripe) {
-  LaserLine s = small_laser();
-  s.beam_radius_m = 2e-5;
-  const Bench bench(s, white_scene({sphere_at({0, 0, 0.18}, 0.03)}));
-  const auto rays = true_rays(s, bench.caster, Pose::Identity());
-  int hits = 0;
-  for (int row = 0; row < 120; ++row) {
-    if (rays[row].object < 0) continue;
-    ++hits;
-    const Eigen::Vector2d pixel = *project(s.camera, rays[row].point_in_scanner);
-    const double middle = bench.electrons(pixel.x(), row);
-    EXPECT_GT(middle, 0) << row;
-    EXPECT_GT(middle, bench.electrons(pixel.x() - 0.05, row)) << row;
-    EXPECT_GT(middle, bench.electrons(pixel.x() + 0.05, row)) << row;
-  }
-  EXPECT_GT(hits, 60);
 }
 
 TEST(LaserSweep, MovesAlongItsStageOrAboutItsAxis) {

@@ -6,61 +6,13 @@
 
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
-#include "libscan/core/random.h"
+#include "ray_scenes.h"
 
 namespace scan::synth {
 namespace {
-
-Eigen::Vector3d random_vector(RandomStream& random) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return {x, y, z};
-}
-
-Scene scene_of(std::vector<std::variant<Shape, Mesh>> geometries,
-               const Pose& pose = Pose::Identity()) {
-  Scene scene;
-  scene.materials.push_back({});
-  for (auto& geometry : geometries) scene.objects.push_back({"", pose, std::move(geometry), 0});
-  return scene;
-}
-
-Pose at(double x, double y, double z) {
-  return make_pose(Eigen::Matrix3d::Identity(), {x, y, z});
-}
-
-// A closed sphere-like mesh with bumps; coordinates are whole multiples of 2^-24 m, so that offsets
-// of up to 1e7 m change no bit of its shape.
-Mesh bumpy_ball(int rings, int sectors) {
-  Mesh mesh;
-  const auto place = [&](double polar, double azimuth) {
-    const double r = 1 + 0.1 * std::sin(4 * polar) * std::cos(3 * azimuth) * std::sin(polar);
-    const Eigen::Vector3d x(r * std::sin(polar) * std::cos(azimuth),
-                            r * std::sin(polar) * std::sin(azimuth), r * std::cos(polar));
-    mesh.vertices.push_back((x * 0x1p24).array().round() * 0x1p-24);
-  };
-  place(0, 0);
-  for (int i = 1; i < rings; ++i)
-    for (int j = 0; j < sectors; ++j)
-      place(std::numbers::pi * i / rings, 2 * std::numbers::pi * j / sectors);
-  place(std::numbers::pi, 0);
-  const auto at_ring = [&](int i, int j) {
-    return static_cast<std::uint32_t>(1 + (i - 1) * sectors + j % sectors);
-  };
-  const auto last = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
-  for (int j = 0; j < sectors; ++j) {
-    mesh.triangles.push_back({0, at_ring(1, j), at_ring(1, j + 1)});
-    for (int i = 1; i + 1 < rings; ++i) {
-      mesh.triangles.push_back({at_ring(i, j), at_ring(i + 1, j), at_ring(i, j + 1)});
-      mesh.triangles.push_back({at_ring(i, j + 1), at_ring(i + 1, j), at_ring(i + 1, j + 1)});
-    }
-    mesh.triangles.push_back({at_ring(rings - 1, j + 1), at_ring(rings - 1, j), last});
-  }
-  return mesh;
-}
 
 // Moller and Trumbore 1997, over all triangles.
 double nearest_by_brute_force(const Mesh& mesh, const Eigen::Vector3d& o,
@@ -244,64 +196,6 @@ TEST(RayCaster, GivesCoincidentSurfacesToTheLowestObject) {
       EXPECT_EQ(hit->object, 0);
     }
   }
-}
-
-// R6: on a convex body every light in front of the surface is seen, however small or large the
-// body.
-TEST(Occlusion, HasNoAcneOnSpheresOfAnySize) {
-  for (const double radius : {1e-6, 1e-3, 1.0, 1e6}) {
-    const RayCaster caster(scene_of({Shape{SphereShape{radius}}}, at(3 * radius, 0, -radius)));
-    const Eigen::Vector3d centre(3 * radius, 0, -radius);
-    int hidden = 0, lit = 0;
-    for (std::uint64_t i = 0; i < 20000; ++i) {
-      RandomStream random(7, 0, i);
-      const Eigen::Vector3d eye = centre + 3 * radius * random_vector(random).normalized();
-      const Eigen::Vector3d aim = centre + 0.5 * radius * random_vector(random);
-      const auto hit = caster.closest(eye, (aim - eye).normalized());
-      if (!hit) continue;
-      const Eigen::Vector3d light = centre + 5 * radius * random_vector(random).normalized();
-      const double cosine = hit->normal.dot((light - hit->point).normalized());
-      if (std::abs(cosine) < 1e-7) continue;  // the horizon itself, to the rounding of the hit
-      (cosine > 0 ? lit : hidden) += 1;
-      ASSERT_EQ(caster.occluded(*hit, light), cosine < 0) << radius << " " << i << " " << cosine;
-    }
-    EXPECT_GT(hidden, 1000);
-    EXPECT_GT(lit, 1000);
-  }
-}
-
-TEST(Occlusion, HasNoAcneOnAMeshOrABlend) {
-  const Shape blend = bud();
-  const RayCaster caster(scene_of({blend}));
-  for (std::uint64_t i = 0; i < 3000; ++i) {
-    RandomStream random(8, 0, i);
-    const Eigen::Vector3d eye = 0.3 * random_vector(random).normalized();
-    const auto hit = caster.closest(eye, (0.02 * random_vector(random) - eye).normalized());
-    if (!hit || hit->normal.dot(eye - hit->point) < 1e-6) continue;
-    EXPECT_FALSE(caster.occluded(*hit, eye)) << "what the eye sees is lit by a light in the eye";
-  }
-  const Mesh mesh = bumpy_ball(40, 80);
-  const RayCaster of_mesh(scene_of({mesh}));
-  for (std::uint64_t i = 0; i < 20000; ++i) {
-    RandomStream random(9, 0, i);
-    const Eigen::Vector3d eye = 3 * random_vector(random).normalized();
-    const auto hit = of_mesh.closest(eye, (0.6 * random_vector(random) - eye).normalized());
-    if (!hit || hit->normal.dot(eye - hit->point) < 1e-6) continue;
-    ASSERT_FALSE(of_mesh.occluded(*hit, eye)) << i;
-  }
-}
-
-TEST(Occlusion, SeesWhatStandsBetweenAndOnlyThat) {
-  Scene scene = scene_of({Shape{PlaneShape{}}, Shape{SphereShape{0.5}}});
-  scene.objects[1].world_from_object = at(0, 0, 2);
-  const RayCaster caster(scene);
-  const auto floor = caster.closest({0.2, 0, 1}, {0, 0, -1});
-  ASSERT_TRUE(floor);
-  EXPECT_TRUE(caster.occluded(*floor, {0.2, 0, 5}));
-  EXPECT_FALSE(caster.occluded(*floor, {0.2, 0, 1})) << "the sphere stands behind the light";
-  EXPECT_FALSE(caster.occluded(*floor, {4, 0, 1}));
-  EXPECT_TRUE(caster.occluded(*floor, {4, 0, -1})) << "the light is behind the surface";
-  EXPECT_TRUE(caster.occluded(*floor, {4, 0, 0})) << "and in its plane";
 }
 
 // R7.

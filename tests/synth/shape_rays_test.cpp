@@ -56,6 +56,16 @@ TEST(RayOnSphere, KeepsItsAccuracyForASmallSphereFarAway) {
   EXPECT_NEAR(hit->distance_m, 1e4 - radius * std::sqrt(1 - 0.0625), 4e-12);
 }
 
+TEST(RayOnSphere, KeepsItsAccuracyJustAboveALargeSphere) {
+  const double radius = 1e6;
+  const Ray ray{{0, 0, radius + 1}, {std::sin(0.5), 0, -std::cos(0.5)}};
+  const auto hit = intersect(SphereShape{radius}, ray);
+  ASSERT_TRUE(hit);
+  const long double d = std::cos(0.5), b = (1e6L + 1) * d, c = 2e6L + 1;  // t^2 - 2 b t + c = 0
+  const long double exact = c / (b + std::sqrt(b * b - c));
+  EXPECT_NEAR(hit->distance_m, static_cast<double>(exact), 1e-15);  // four roundings
+}
+
 TEST(RayOnPlane, IsExactAtGrazingIncidence) {
   for (const double degrees : {0.0, 60.0, 89.9, 89.99, 89.999}) {
     const double angle = degrees * M_PI / 180;
