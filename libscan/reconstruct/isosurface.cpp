@@ -90,7 +90,10 @@ void collect_crossed(const SplineField& field, const FieldCell& cell, int depth,
 
 std::vector<CrossedCell> crossed_cells(const SplineField& field, int depth) {
   std::vector<FieldCell> tasks;
-  collect_tasks(field, coarsest_cell(field), std::min(depth, task_depth), tasks);
+  constexpr int side = 1 << coarsest_depth;
+  for (int i = 0; i < side * side * side; ++i)
+    collect_tasks(field, coarsest_cell(field, {i % side, i / side % side, i / side / side}),
+                  std::min(depth, task_depth), tasks);
   std::vector<std::vector<CrossedCell>> parts(tasks.size());
   parallel_for(
       tasks.size(), [&](std::size_t i) { collect_crossed(field, tasks[i], depth, parts[i]); }, 4);

@@ -171,6 +171,17 @@ std::int32_t BlockLevel::find_active(const BlockPlace& place) const {
   return at != end && *at == key ? static_cast<std::int32_t>(at - keys.begin()) : -1;
 }
 
+bool BlockLevel::any_active(const BlockPlace& low, int count) const {
+  const auto block = [&](int axis, int end) {
+    return (low[axis] + end * (count - 1)) / block_width;
+  };
+  for (int z = block(2, 0); z <= block(2, 1); ++z)
+    for (int y = block(1, 0); y <= block(1, 1); ++y)
+      for (int x = block(0, 0); x <= block(0, 1); ++x)
+        if (find_active({x, y, z}) >= 0) return true;
+  return false;
+}
+
 std::int32_t BlockLevel::find(const BlockPlace& place) const {
   if (place[0] < 0 || place[1] < 0 || place[2] < 0) return -1;
   if (const std::int32_t found = find_active(place); found >= 0) return found;
@@ -180,14 +191,31 @@ std::int32_t BlockLevel::find(const BlockPlace& place) const {
   return at != keys.end() && *at == key ? static_cast<std::int32_t>(at - keys.begin()) : -1;
 }
 
+std::vector<int> depths_seen(const OctreeGrid& grid, std::span<const Eigen::Vector3d> points) {
+  std::vector<int> depths(points.size());
+  parallel_for(points.size(), [&](std::size_t i) {
+    depths[i] = coarsest_depth;
+    for (std::size_t l = 1; l < grid.levels.size(); ++l) {
+      const int cells = grid.levels[l].cells();
+      const Eigen::Vector3d& u = points[i];
+      // A cell of this name has the functions cell ... cell+2 on each axis.
+      if (!grid.levels[l].any_active(
+              {cell_of(u[0], cells), cell_of(u[1], cells), cell_of(u[2], cells)}, 3))
+        break;
+      depths[i] = grid.levels[l].depth;
+    }
+  });
+  return depths;
+}
+
 OctreeGrid make_octree_grid(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
                             int complete_depth, double limit_gib) {
   const int finest = std::max(complete_depth, *std::max_element(depths.begin(), depths.end()));
   OctreeGrid grid;
-  grid.levels.resize(finest + 1);
+  grid.levels.resize(finest - coarsest_depth + 1);
   std::vector<std::uint64_t> finer;
   double bytes = 0;
-  for (int depth = finest; depth >= 0; --depth) {
+  for (int depth = finest; depth >= coarsest_depth; --depth) {
     std::vector<std::uint64_t> active;
     if (depth > complete_depth) {
       active = keys_around_points(points, depths, depth);
@@ -197,8 +225,8 @@ OctreeGrid make_octree_grid(std::span<const Eigen::Vector3d> points, std::span<c
       add_range({0, 0, 0}, {last, last, last}, depth, active);
       sort_unique(active);
     }
-    grid.levels[depth] = make_level(depth, active);
-    bytes += bytes_per_block * static_cast<double>(grid.levels[depth].keys.size());
+    grid.levels[depth - coarsest_depth] = make_level(depth, active);
+    bytes += bytes_per_block * static_cast<double>(grid.levels[depth - coarsest_depth].keys.size());
     if (bytes > limit_gib * 1073741824.0)
       throw Error(Trouble::resource,
                   "octree: " + std::to_string(bytes / 1073741824.0) + " GiB at depth " +

@@ -5,7 +5,7 @@
 // A level of depth d divides the unit cube into 2^d cells a side; along each axis it has the
 // functions 0 ... 2^d+1 (bspline.h). Functions are kept in blocks of 4 x 4 x 4. A block is active
 // (its functions are unknowns) or halo (an active block's neighbour, where sums of coarser levels
-// are needed). The coarse levels, from depth 0, are complete.
+// are needed). The coarsest levels are complete.
 #pragma once
 
 #include <Eigen/Core>
@@ -52,10 +52,14 @@ struct BlockLevel {
   int cells() const { return 1 << depth; }
   std::int32_t find(const BlockPlace& place) const;         // -1: none
   std::int32_t find_active(const BlockPlace& place) const;  // -1: none or halo
+  // Whether any of the functions `low` ... `low + count - 1` (per axis, count <= 5) is active.
+  bool any_active(const BlockPlace& low, int count) const;
 };
 
+inline constexpr int coarsest_depth = 3;
+
 struct OctreeGrid {
-  std::vector<BlockLevel> levels;  // of depth 0, 1 ... to the finest
+  std::vector<BlockLevel> levels;  // of depth coarsest_depth ... to the finest
   int finest_depth() const { return levels.back().depth; }
 };
 
@@ -64,6 +68,9 @@ struct OctreeGrid {
 // than `limit_gib`.
 OctreeGrid make_octree_grid(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
                             int complete_depth, double limit_gib = 16);
+
+// The finest depth at which any active function reaches each point: there a sample sees all of f.
+std::vector<int> depths_seen(const OctreeGrid& grid, std::span<const Eigen::Vector3d> points);
 
 // Blocks of the neighbour tables by offsets in {-1, 0, 1}.
 inline int neighbour_slot(int dx, int dy, int dz) { return (dx + 1) + 3 * (dy + 1) + 9 * (dz + 1); }

@@ -3,6 +3,7 @@
 #include "libscan/reconstruct/sample_term.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libscan/core/parallel.h"
 
@@ -54,6 +55,37 @@ void accumulate(double* cube, const CellWeights& w, const ValueAndSlope& f) {
     }
 }
 
+using CellMatrix = Eigen::Matrix<double, 27, 27>;
+
+void add_outer_products(const Eigen::Vector3d& in_cell, double value_factor, double slope_factor,
+                        CellMatrix& sum) {
+  const CellWeights w = weights_at(in_cell);
+  Eigen::Matrix<double, 27, 4> rows;
+  for (int i = 0; i < 27; ++i) {
+    const int a = i % 3, b = i / 3 % 3, c = i / 9;
+    rows(i, 0) = std::sqrt(value_factor) * w.x.value[a] * w.y.value[b] * w.z.value[c];
+    rows(i, 1) = std::sqrt(slope_factor) * w.x.slope[a] * w.y.value[b] * w.z.value[c];
+    rows(i, 2) = std::sqrt(slope_factor) * w.x.value[a] * w.y.slope[b] * w.z.value[c];
+    rows(i, 3) = std::sqrt(slope_factor) * w.x.value[a] * w.y.value[b] * w.z.slope[c];
+  }
+  sum.noalias() += rows * rows.transpose();
+}
+
+// Where the 27 functions of a cell lie among all functions of the level.
+std::array<Eigen::Index, 27> cell_functions(const BlockLevel& level, std::size_t block,
+                                            int corner) {
+  std::array<Eigen::Index, 27> at;
+  for (int i = 0; i < 27; ++i) {
+    const int x = corner % cube_width + i % 3, y = corner / cube_width % cube_width + i / 3 % 3,
+              z = corner / (cube_width * cube_width) + i / 9;
+    const std::int32_t owner =
+        level.neighbours[block][neighbour_slot(x / block_width, y / block_width, z / block_width)];
+    at[i] = Eigen::Index{owner} * block_size +
+            slot_in_block(x % block_width, y % block_width, z % block_width);
+  }
+  return at;
+}
+
 }  // namespace
 
 SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
@@ -69,7 +101,7 @@ SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
   parallel_for(chosen.size(), [&](std::size_t i) {
     const Eigen::Vector3d& u = samples.points[chosen[i]];
     const BlockPlace cell = {cell_along(u, 0), cell_along(u, 1), cell_along(u, 2)};
-    const std::int32_t block = level.find_active({cell[0] / 4, cell[1] / 4, cell[2] / 4});
+    const std::int32_t block = level.find({cell[0] / 4, cell[1] / 4, cell[2] / 4});
     addresses[i] = {static_cast<std::uint32_t>(block),
                     static_cast<std::uint32_t>(slot_in_block(cell[0] % 4, cell[1] % 4, cell[2] % 4)),
                     chosen[i]};
@@ -165,6 +197,22 @@ void SampleTerm::add_diagonal(const BlockLevel& level, std::vector<double>& sum)
           }
     }
   });
+}
+
+void SampleTerm::add_matrix(const BlockLevel& level, Eigen::MatrixXd& matrix) const {
+  for (std::size_t bucket = 0; bucket < bucket_block_.size(); ++bucket) {
+    // One small matrix per cell (samples of a cell follow each other), then to its place.
+    for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1];) {
+      const int corner = placed_[i].corner;
+      CellMatrix sum = CellMatrix::Zero();
+      for (; i < bucket_begin_[bucket + 1] && placed_[i].corner == corner; ++i)
+        add_outer_products(placed_[i].in_cell, placed_[i].weight * value_weight_,
+                           placed_[i].weight * gradient_weight_ * cells_ * cells_, sum);
+      const std::array<Eigen::Index, 27> at = cell_functions(level, bucket_block_[bucket], corner);
+      for (int b = 0; b < 27; ++b)
+        for (int a = 0; a < 27; ++a) matrix(at[a], at[b]) += sum(a, b);
+    }
+  }
 }
 
 double SampleTerm::energy(const BlockLevel& level, const std::vector<double>& u) const {

@@ -27,6 +27,8 @@ class SampleTerm {
   void add_right_side(const BlockLevel& level, std::vector<double>& sum) const;
   // sum += diagonal of the matrix.
   void add_diagonal(const BlockLevel& level, std::vector<double>& sum) const;
+  // matrix += the term's matrix, dense; for a level whose blocks are all active.
+  void add_matrix(const BlockLevel& level, Eigen::MatrixXd& matrix) const;
   // The term's own value for u.
   double energy(const BlockLevel& level, const std::vector<double>& u) const;
 

@@ -29,7 +29,7 @@ void for_active_functions(const BlockLevel& level, const std::array<std::int32_t
 }
 
 void add_own_coefficients(const SplineField& field, FieldCell& cell) {
-  const int l = cell.depth;
+  const int l = cell.depth - coarsest_depth;
   if (l >= static_cast<int>(field.grid.levels.size())) return;
   for_active_functions(field.grid.levels[l], cell.place,
                        [&](int i, std::size_t block, int slot) {
@@ -52,8 +52,8 @@ inline void refine_three(double a, double b, double c, int half, double out[3]) 
 
 }  // namespace
 
-FieldCell coarsest_cell(const SplineField& field) {
-  FieldCell cell;
+FieldCell coarsest_cell(const SplineField& field, const std::array<std::int32_t, 3>& place) {
+  FieldCell cell{coarsest_depth, place, {}};
   add_own_coefficients(field, cell);
   return cell;
 }
@@ -77,15 +77,11 @@ FieldCell child_cell(const SplineField& field, const FieldCell& cell, int octant
 }
 
 bool has_finer_functions(const SplineField& field, const FieldCell& cell) {
-  const int l = cell.depth + 1;
+  const int l = cell.depth + 1 - coarsest_depth;
   if (l >= static_cast<int>(field.grid.levels.size())) return false;
-  const BlockLevel& finer = field.grid.levels[l];
-  // The children's functions are 2*place ... 2*place+3 along each axis: one block or two.
-  const auto block = [&](int a, int end) { return (2 * cell.place[a] + 3 * end) / block_width; };
-  for (int corner = 0; corner < 8; ++corner)
-    if (finer.find_active({block(0, corner & 1), block(1, corner >> 1 & 1), block(2, corner >> 2)}) >= 0)
-      return true;
-  return false;
+  // The children's functions.
+  return field.grid.levels[l].any_active({2 * cell.place[0], 2 * cell.place[1], 2 * cell.place[2]},
+                                         4);
 }
 
 FieldValue evaluate(const FieldCell& cell, const Eigen::Vector3d& in_cell) {
@@ -109,7 +105,7 @@ FieldValue evaluate(const SplineField& field, const Eigen::Vector3d& u) {
     return std::array<std::int32_t, 3>{cell_of(u[0], 1 << depth), cell_of(u[1], 1 << depth),
                                        cell_of(u[2], 1 << depth)};
   };
-  FieldCell cell = coarsest_cell(field);
+  FieldCell cell = coarsest_cell(field, place_at(coarsest_depth));
   while (has_finer_functions(field, cell)) {
     const auto finer = place_at(cell.depth + 1);
     cell = child_cell(field, cell, (finer[0] & 1) | (finer[1] & 1) << 1 | (finer[2] & 1) << 2);

@@ -24,7 +24,7 @@ struct FieldCell {
   std::array<double, 27> coefficients{};
 };
 
-FieldCell coarsest_cell(const SplineField& field);  // the whole unit cube
+FieldCell coarsest_cell(const SplineField& field, const std::array<std::int32_t, 3>& place);
 // `octant`: bits x, y, z.
 FieldCell child_cell(const SplineField& field, const FieldCell& cell, int octant);
 // Whether a finer level has functions on the cell.

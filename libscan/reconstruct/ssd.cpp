@@ -69,7 +69,7 @@ SurfaceResult ssd(const PointCloud& cloud, const SsdOptions& options, const Prog
       sample_depths(samples, options.samples_per_cell, complete_depth, options.depth);
   if (progress) progress("octree", 0);
   const OctreeGrid grid = make_octree_grid(samples.points, depths, complete_depth);
-  SsdSystem system(grid, samples, depths,
+  SsdSystem system(grid, samples,
                    {options.value_weight, options.gradient_weight, options.smoothness_weight});
   const SsdSolution solution =
       solve(system, grid, options.relative_residual, options.max_iterations, progress);

@@ -12,14 +12,15 @@ namespace scan {
 struct SsdSolution {
   LevelArrays coefficients;
   int iterations = 0;  // on all levels together
-  // Of the whole system: sqrt(r' D^-1 r / b' D^-1 b), r = b - A x computed anew at the end, D the
-  // diagonal; so it does not depend on the scale of a level's functions.
+  // Of the whole system: sqrt(r' P r / b' P b), r = b - A x computed anew at the end, P the
+  // preconditioner; so it is near the energy norm of the error over that of the solution.
   double relative_residual = 0;
   SolveStop stop = SolveStop::iteration_limit;
 };
 
-// The diagonal as preconditioner of a system with all levels' functions is a multilevel
-// preconditioner of the finest level's (Bramble, Pasciak and Xu 1990; Griebel 1994).
+// Preconditioner: the diagonal of the system with all levels' functions, which acts as a multilevel
+// preconditioner of the finest level (Bramble, Pasciak and Xu 1990; Griebel 1994), and an exact
+// solution on the coarsest level.
 SsdSolution solve(SsdSystem& system, const OctreeGrid& grid, double relative_residual,
                   int max_iterations, const Progress& progress = {});
 

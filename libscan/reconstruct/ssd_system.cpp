@@ -9,11 +9,10 @@
 
 namespace scan {
 
-SsdSystem::SsdSystem(const OctreeGrid& grid, const Samples& samples, std::vector<int> depths,
-                     const SsdWeights& weights)
+SsdSystem::SsdSystem(const OctreeGrid& grid, const Samples& samples, const SsdWeights& weights)
     : grid_(grid),
       samples_(samples),
-      depths_(std::move(depths)),
+      depths_(depths_seen(grid, samples.points)),
       weights_(weights),
       area_(samples.area),
       terms_(grid.levels.size()) {
@@ -31,7 +30,7 @@ void SsdSystem::use_levels(std::size_t finest) {
   finest_ = finest;
   std::vector<std::vector<std::uint32_t>> chosen(finest + 1);
   for (std::uint32_t i = 0; i < depths_.size(); ++i)
-    chosen[std::min<std::size_t>(depths_[i], finest)].push_back(i);
+    chosen[std::min<std::size_t>(depths_[i] - coarsest_depth, finest)].push_back(i);
   for (std::size_t l = 0; l <= finest; ++l)
     terms_[l] = SampleTerm(grid_.levels[l], samples_, area_, chosen[l], weights_.value,
                            weights_.gradient);
@@ -99,6 +98,28 @@ LevelArrays SsdSystem::diagonal() const {
     });
   }
   return result;
+}
+
+Eigen::MatrixXd SsdSystem::coarsest_matrix() const {
+  const BlockLevel& level = grid_.levels.front();
+  const Eigen::Index size = static_cast<Eigen::Index>(level.active * block_size);
+  std::vector<std::uint32_t> all(depths_.size());
+  std::iota(all.begin(), all.end(), 0u);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+  SampleTerm(level, samples_, area_, all, weights_.value, weights_.gradient)
+      .add_matrix(level, matrix);
+  parallel_for(
+      static_cast<std::size_t>(size),
+      [&](std::size_t column) {
+        std::vector<double> unit(size, 0.0);
+        unit[column] = 1;
+        double* sum = matrix.data() + column * size;  // columns are contiguous
+        for (const std::int32_t b : level.neighbours[column / block_size])
+          if (b >= 0) bending_[0].add(level, unit, b, weights_.smoothness, sum + b * block_size);
+        if (!(sum[column] > 0)) sum[column] = 1;
+      },
+      16);
+  return matrix;
 }
 
 double SsdSystem::energy(const LevelArrays& x) {

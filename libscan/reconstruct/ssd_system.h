@@ -22,8 +22,7 @@ struct SsdWeights {
 class SsdSystem {
  public:
   // Keeps references: grid and samples must live as long.
-  SsdSystem(const OctreeGrid& grid, const Samples& samples, std::vector<int> depths,
-            const SsdWeights& weights);
+  SsdSystem(const OctreeGrid& grid, const Samples& samples, const SsdWeights& weights);
 
   // From now on only levels 0 ... `finest` act; deeper samples are seen by that level.
   void use_levels(std::size_t finest);
@@ -34,6 +33,8 @@ class SsdSystem {
   LevelArrays right_side();
   // Of A; 1 where a row is empty (functions outside the cube).
   LevelArrays diagonal() const;
+  // The coarsest level's block of A, dense; 1 on the diagonal of empty rows.
+  Eigen::MatrixXd coarsest_matrix() const;
   double energy(const LevelArrays& x);
 
  private:

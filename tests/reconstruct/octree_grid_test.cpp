@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/reconstruct/octree_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "libscan/core/error.h"
+#include "tests/reconstruct/shapes.h"
+
+namespace scan {
+namespace {
+
+TEST(RobustBox, IsNotDecidedByAFarPoint) {
+  std::vector<Eigen::Vector3d> points = sphere_cloud(5000).points;
+  const UnitBox without = robust_box(points);
+  points.push_back({1e6, -1e6, 3e5});
+  const UnitBox with = robust_box(points);
+  EXPECT_NEAR(with.side_m, without.side_m, 1e-12);
+  EXPECT_NEAR((with.origin_m - without.origin_m).norm(), 0, 1e-12);
+  EXPECT_NEAR(without.side_m, 2.5, 0.01);  // 1.25 diameters, to the gap of the outermost samples
+}
+
+TEST(RobustBox, HasNoSideForOnePlace) {
+  EXPECT_EQ(robust_box(std::vector<Eigen::Vector3d>(20, {1e6, 2, 3})).side_m, 0);
+}
+
+OctreeGrid sphere_grid(int depth) {
+  std::vector<Eigen::Vector3d> points;
+  for (const auto& x : sphere_cloud(2000).points)
+    points.push_back(0.4 * x + Eigen::Vector3d::Constant(0.5));
+  // Deep on one side only, so that level differences meet.
+  std::vector<int> depths;
+  for (const auto& u : points) depths.push_back(u[0] > 0.5 ? depth : 4);
+  return make_octree_grid(points, depths, 4);
+}
+
+TEST(OctreeGrid, HoldsTheParentsOfItsActiveBlocks) {
+  const OctreeGrid grid = sphere_grid(7);
+  ASSERT_EQ(grid.finest_depth(), 7);
+  for (std::size_t l = 1; l < grid.levels.size(); ++l)
+    for (std::size_t b = 0; b < grid.levels[l].active; ++b) {
+      const BlockPlace p = grid.levels[l].blocks[b];
+      const std::int32_t parent = grid.levels[l - 1].find_active({p[0] / 2, p[1] / 2, p[2] / 2});
+      ASSERT_GE(parent, 0);
+      EXPECT_EQ(grid.levels[l].parent[b], parent);
+    }
+}
+
+TEST(OctreeGrid, SurroundsEachActiveBlock) {
+  const OctreeGrid grid = sphere_grid(6);
+  for (const BlockLevel& level : grid.levels)
+    for (std::size_t b = 0; b < level.active; ++b)
+      for (int slot = 0; slot < 27; ++slot) {
+        BlockPlace p = level.blocks[b];
+        p[0] += slot % 3 - 1;
+        p[1] += slot / 3 % 3 - 1;
+        p[2] += slot / 9 - 1;
+        const int last = (level.cells() + 1) / block_width;
+        const bool on_level = std::min({p[0], p[1], p[2]}) >= 0 && std::max({p[0], p[1], p[2]}) <= last;
+        ASSERT_EQ(level.neighbours[b][slot] >= 0, on_level);
+        if (on_level) {
+          EXPECT_EQ(level.blocks[level.neighbours[b][slot]], p);
+        }
+      }
+}
+
+TEST(OctreeGrid, RefusesWhatDoesNotFit) {
+  const std::vector<Eigen::Vector3d> points = {{0.5, 0.5, 0.5}};
+  const std::vector<int> depths = {8};
+  try {
+    make_octree_grid(points, depths, 4, 1e-4);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.trouble(), Trouble::resource);
+  }
+}
+
+}  // namespace
+}  // namespace scan

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Oriented samples of shapes with a closed form, for the tests of this folder.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "libscan/core/point_cloud.h"
+#include "libscan/core/random.h"
+
+namespace scan {
+
+inline PointCloud sphere_cloud(std::size_t count, double radius_m = 1, std::uint64_t seed = 1) {
+  PointCloud cloud;
+  RandomStream random(seed, 0, 0);
+  while (cloud.size() < count) {
+    const Eigen::Vector3d v(random.normal(), random.normal(), random.normal());
+    cloud.normals.push_back(v.normalized());
+    cloud.points.push_back(radius_m * cloud.normals.back());
+  }
+  return cloud;
+}
+
+// Uniform by area: the tube angle is accepted with the density of its ring's length.
+inline PointCloud torus_cloud(std::size_t count, double major_m = 1, double minor_m = 0.35,
+                              std::uint64_t seed = 2) {
+  PointCloud cloud;
+  RandomStream random(seed, 0, 0);
+  while (cloud.size() < count) {
+    const double u = 2 * std::numbers::pi * random.uniform();
+    const double v = 2 * std::numbers::pi * random.uniform();
+    if (random.uniform() > (major_m + minor_m * std::cos(v)) / (major_m + minor_m)) continue;
+    const Eigen::Vector3d ring(std::cos(u), std::sin(u), 0);
+    cloud.normals.push_back(std::cos(v) * ring + std::sin(v) * Eigen::Vector3d::UnitZ());
+    cloud.points.push_back(major_m * ring + minor_m * cloud.normals.back());
+  }
+  return cloud;
+}
+
+}  // namespace scan
