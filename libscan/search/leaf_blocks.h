@@ -41,8 +41,7 @@ class LeafBlocks {
  public:
   static constexpr std::uint32_t width = 8;
 
-  // Blocks for the points in their order; the last one is filled up with NaN, which no bound
-  // admits.
+  // Blocks for the points in their order; the last is filled up with NaN, which no bound admits.
   void append(std::span<const LocalPoint> points, std::span<const Eigen::Vector3d> points_m);
   void resize(std::size_t blocks);
   void fill(std::size_t block, std::span<const LocalPoint> points,
@@ -57,13 +56,13 @@ class LeafBlocks {
     const float limit2 = screen.limit2();
     const Eight distance2 = (of.x - x).square() + (of.y - y).square() + (of.z - z).square();
     std::uint32_t hits = 0;
-    for (std::uint32_t i = 0; i < width; ++i) hits |= distance2[i] <= limit2 ? bit[i] : 0;
+    for (std::uint32_t i = 0; i < width; ++i) hits |= std::uint32_t{distance2[i] <= limit2} << i;
     if constexpr (Collector::keeps_one) {
       if (hits == 0) return;
       // The nearest first: it shrinks the limit so far that the others need no look.
       const int i = nearest_of(hits, distance2);
       offer(block, i, screen);
-      hits &= ~bit[i];
+      hits &= ~(1u << i);
     }
     for (; hits != 0; hits &= hits - 1) {
       const int i = std::countr_zero(hits);
@@ -76,10 +75,8 @@ class LeafBlocks {
 
   static int nearest_of(std::uint32_t hits, const Eight& distance2) {
     int nearest = std::countr_zero(hits);
-    for (hits &= hits - 1; hits != 0; hits &= hits - 1) {
-      const int i = std::countr_zero(hits);
-      nearest = distance2[i] < distance2[nearest] ? i : nearest;
-    }
+    for (; hits != 0; hits &= hits - 1)
+      if (distance2[std::countr_zero(hits)] < distance2[nearest]) nearest = std::countr_zero(hits);
     return nearest;
   }
 
@@ -89,7 +86,6 @@ class LeafBlocks {
     screen.offer(exact.point_m, exact.index);
   }
 
-  static constexpr std::uint32_t bit[width] = {1, 2, 4, 8, 16, 32, 64, 128};
   struct Coordinates {
     Eight x, y, z;
   };

@@ -41,17 +41,17 @@ struct PclOctree::Tree {
     return {original[i], squared_distance_m2(points_m[i], query)};
   }
 
-  // PCL compares squared float distances, to points and to voxel centres, with a bound computed in
-  // double. A voxel's centre is a multiple of half a voxel's side, |centre| < 2, so rounded to
-  // float it is off by 2^-24 at most on an axis, as a point is; the distance by slack
-  // (local_frame.h), and by 3 * 2^-24 of itself. As a distance that matters is below 2 sqrt(3) (2 +
-  // |q|), twice 2^-20 (2 + |q|) = 16 * slack, at least, covers the sum; from |q| = 2^14 on, all are
+  // PCL compares squared float distances D^2, from the query to points and to voxel centres, with
+  // bounds computed in double. Rounding query and point (or centre, |centre| < 2) moves D by at
+  // most sqrt(3) 2^-24 (2 + |q|) <= sqrt(3) slack (local_frame.h); computing D^2 in float, by
+  // another 3 * 2^-24 D <= 3 sqrt(3) 2^-24 (2 + |q|) <= 5.2 slack. Together less than 8 slack.
+  // Where that makes up a part of the cloud, its float coordinates tell nothing, and all are
   // candidates.
   template <class Collector>
   void visit(const Eigen::Vector3d& query_m, double radius_m, Collector& collector) const {
     const LocalQuery query(frame, query_m);
-    const double radius = radius_m * frame.units_per_m + 64 * query.slack;
-    if (!(radius < 4 * cube_half) || 64 * query.slack > 0.25) {
+    const double margin = 8 * query.slack, radius = radius_m * frame.units_per_m + margin;
+    if (!(radius < unlimited_m && margin < 0.25)) {
       for (std::size_t i = 0; i < points_m.size(); ++i) collector.offer(exact(i, query_m));
       return;
     }

@@ -4,8 +4,10 @@
 // clouds, against nanoflann in single precision (leaves of ten).
 //
 // All run on one thread, in one process, with the same queries in the same order. Each reports
-// `checksum`, the sum of its distances, and fails if that is not nanoflann's to single precision.
-// After the runs a table gives each time as a multiple of nanoflann's.
+// `checksum`, the sum of its distances, and fails if that is not the others' to single precision.
+// After the runs a table gives each time (processor time, the best of the repetitions) as a
+// multiple of nanoflann's. On a busy machine, add --benchmark_repetitions=5
+// --benchmark_enable_random_interleaving=true.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -96,7 +98,7 @@ double sum_of_nearest(const Search& search, const Eigen::Vector3d& query, std::s
   }
 }
 
-// Checksums of nanoflann by case, which it, as the first of each case, sets.
+// Checksums by case, of the model that happens to run it first.
 std::map<std::string, double>& reference_sums() {
   static std::map<std::string, double> sums;
   return sums;
@@ -157,7 +159,7 @@ class RatioReporter : public benchmark::ConsoleReporter {
       if (run.error_occurred || run.run_type != Run::RT_Iteration) continue;
       const std::string name = run.benchmark_name();
       const std::size_t slash = name.rfind('/');
-      const double time = run.GetAdjustedRealTime();
+      const double time = run.GetAdjustedCPUTime();
       double& best =
           best_ms_[name.substr(0, slash)].try_emplace(name.substr(slash + 1), time).first->second;
       best = std::min(best, time);
