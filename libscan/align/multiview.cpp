@@ -225,6 +225,7 @@ void Alignment::refine() {
     ++result_.rounds;
     if (progress_) progress_("refine", double(result_.rounds) / options_.max_rounds);
   }
+  if (progress_) progress_("refine", 1);
   result_.pairs_used = pairs.forms.size() / 2;
   judge(pairs, frame);
 }

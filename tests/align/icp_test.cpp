@@ -111,7 +111,7 @@ TEST(Icp, TheObjectiveNeverRises) {
   const auto [source, target] = test::split(test::bumpy_surface(3000, 18), 19);
   RandomStream random(20, 0, 0);
   for (const IcpMethod method : both)
-    for (const double off : {0.05, 0.3, 0.6}) {
+    for (const double off : {0.05, 0.3, 0.6, 1.0, 1.5}) {
       const IcpResult result = icp(source, target, test::random_pose(random, off, off),
                                    {.method = method,
                                     .max_pair_distance_m = 10,
