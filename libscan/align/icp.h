@@ -32,9 +32,9 @@ std::string_view name_of(Stop stop);  // "converged", "iteration limit", "too fe
 struct IcpOptions {
   IcpMethod method = IcpMethod::point_to_plane;
   SearchMethod search = SearchMethod::kd_tree;
-  double max_pair_distance_m = 0;  // 0: three times the median pair distance, shrinking
+  double max_pair_distance_m = 0;       // 0: three times the median pair distance, shrinking
   double max_normal_angle_rad = 0.785;  // between paired normals, where both clouds have them
-  double trim_fraction = 0.1;      // share of the worst pairs left out
+  double trim_fraction = 0.1;           // share of the worst pairs left out
   int max_iterations = 60;
   double stop_rotation_rad = 1e-6;
   double stop_translation_fraction = 1e-6;  // of the source's extent
@@ -52,16 +52,19 @@ struct IcpResult {
   std::size_t pairs = 0;
   double inlier_fraction_of_source = 0;
   double rms_m = 0;  // of the residual that was minimised, over the pairs kept
-  Matrix6 information = Matrix6::Zero();  // J^T J / sigma^2 at the end, about the target's frame origin
-  std::vector<std::string> weak_directions;  // "slide along ...", "turn about ..." in the target frame
+  Matrix6 information =
+      Matrix6::Zero();  // J^T J / sigma^2 at the end, about the target's frame origin
+  std::vector<std::string>
+      weak_directions;  // "slide along ...", "turn about ..." in the target frame
   std::vector<double> history_rms_m;
   std::size_t invalid_points = 0;  // not finite, left out, both clouds together
-  double guess_off_rotation = 0;   // Frobenius distance of the guess's matrix from the rotation used
+  double guess_off_rotation = 0;  // Frobenius distance of the guess's matrix from the rotation used
   Cost cost;
 };
 
-// Point-to-plane needs target normals: zero ones are not used, missing ones are scan::Error (input).
-IcpResult icp(const PointCloud& source, const PointCloud& target, const Pose& target_from_source_guess,
-              const IcpOptions& options = {});
+// Point-to-plane needs target normals: zero ones are not used, missing ones are scan::Error
+// (input).
+IcpResult icp(const PointCloud& source, const PointCloud& target,
+              const Pose& target_from_source_guess, const IcpOptions& options = {});
 
 }  // namespace scan

@@ -31,8 +31,8 @@ class FormCost : public ceres::SizedCostFunction<6, 6, 6> {
     using RowMajor = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
     Eigen::Map<Vector6> out(residual);
     out = root_ * (Map(x[0]) - Map(x[1])) - right_;
-    if (jacobian && jacobian[0]) Eigen::Map<RowMajor> { jacobian[0] } = root_;
-    if (jacobian && jacobian[1]) Eigen::Map<RowMajor> { jacobian[1] } = -root_;
+    if (jacobian && jacobian[0]) Eigen::Map<RowMajor>{jacobian[0]} = root_;
+    if (jacobian && jacobian[1]) Eigen::Map<RowMajor>{jacobian[1]} = -root_;
     return true;
   }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// The second step of many scans: all poses together, over point-to-plane pairs between all scans that
-// overlap (Pulli 1999; the pairs of two scans are compressed to one quadratic form, so that the
-// solver's work does not grow with the points).
+// The second step of many scans: all poses together, over point-to-plane pairs between all scans
+// that overlap (Pulli 1999; the pairs of two scans are compressed to one quadratic form, so that
+// the solver's work does not grow with the points).
 #pragma once
 
 #include <span>

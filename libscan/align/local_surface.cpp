@@ -47,7 +47,9 @@ Spread spread_of(std::span<const Neighbour> found, const std::vector<Eigen::Vect
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-bool is_line(const Spread& s) { return s.variances[1] < thin_variance_ratio * s.variances[2]; }
+bool is_line(const Spread& s) {
+  return s.variances[1] < thin_variance_ratio * s.variances[2];
+}
 bool is_surface(const Spread& s) {
   return !is_line(s) && s.variances[0] < thin_variance_ratio * s.variances[1];
 }
@@ -79,7 +81,8 @@ void LocalSurface::prepare(std::span<const std::uint32_t> indices) {
     if (!made_[i]) missing.push_back(i);
     made_[i] = true;
   }
-  parallel_for(missing.size(), [&](std::size_t i) { fits_[missing[i]] = fit_at(points_[missing[i]]); });
+  parallel_for(missing.size(),
+               [&](std::size_t i) { fits_[missing[i]] = fit_at(points_[missing[i]]); });
 }
 
 LocalFit LocalSurface::fit_at(const Eigen::Vector3d& point) const {

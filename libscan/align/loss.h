@@ -26,8 +26,8 @@ struct TukeyLoss {
   }
 };
 
-// The limit that keeps 95 % of the efficiency of least squares on normal noise, in units of its sigma
-// (Holland and Welsch 1977), and the factor from a median of absolute residuals to sigma.
+// The limit that keeps 95 % of the efficiency of least squares on normal noise, in units of its
+// sigma (Holland and Welsch 1977), and the factor from a median of absolute residuals to sigma.
 inline constexpr double tukey_limit_in_sigmas = 4.685;
 inline constexpr double sigma_from_median = 1.4826;
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libscan/align/pairs.h"
 #include "libscan/align/placement.h"
 #include "libscan/align/scan_pairs.h"
 #include "libscan/core/error.h"
@@ -61,6 +62,7 @@ class Alignment {
   double thinning_side_m(const std::vector<PointCloud>& finite) const;
   void place();
   void refine();
+  std::vector<ScanCouple> placed_couples() const;
   DataFrame shared_frame() const;
   JointGates first_gates() const;
   std::vector<Vector6> joint_step(const JointPairs& pairs, const DataFrame& frame);
@@ -96,15 +98,15 @@ Alignment::Alignment(std::span<const PointCloud> clouds, std::span<const Pose> g
   if (!box.isEmpty()) origin_ = guesses[anchor_] * box.center();
   for (std::size_t i = 0; i < clouds.size(); ++i)
     result_.scans[i].world_from_scan =
-        make_pose(nearest_rotation(guesses[i].linear()), guesses[i].translation() - origin_);
+        Eigen::Translation3d(-origin_) * with_proper_rotation(guesses[i]);
 }
 
 double Alignment::thinning_side_m(const std::vector<PointCloud>& finite) const {
   if (options_.thin_m > 0) return options_.thin_m;
   std::vector<double> spacings(finite.size());
   parallel_for(
-      finite.size(), [&](std::size_t i) { spacings[i] = LocalSurface(finite[i].points).spacing_m(); },
-      1);
+      finite.size(),
+      [&](std::size_t i) { spacings[i] = LocalSurface(finite[i].points).spacing_m(); }, 1);
   std::erase(spacings, 0);
   return thin_in_spacings * median(std::move(spacings));
 }
@@ -117,8 +119,9 @@ void Alignment::prepare() {
   parallel_for(
       finite.size(),
       [&](std::size_t i) {
-        scans_[i] = std::make_unique<PreparedScan>(
-            side_m > 0 && !finite[i].empty() ? voxel_grid(finite[i], side_m) : std::move(finite[i]));
+        scans_[i] = std::make_unique<PreparedScan>(side_m > 0 && !finite[i].empty()
+                                                       ? voxel_grid(finite[i], side_m)
+                                                       : std::move(finite[i]));
       },
       1);
 }
@@ -163,8 +166,9 @@ JointGates Alignment::first_gates() const {
           .min_overlap = options_.min_overlap};
 }
 
-// The twists of all scans about the frame's centre, in its units. A step that has not become smaller
-// goes to and fro between two sets of pairs: then, and while it lasts, only a part of it is taken.
+// The twists of all scans about the frame's centre, in its units. A step that has not become
+// smaller goes to and fro between two sets of pairs: then, and while it lasts, only a part of it is
+// taken.
 std::vector<Vector6> Alignment::joint_step(const JointPairs& pairs, const DataFrame& frame) {
   std::vector<bool> fixed(scans_.size(), true);
   for (const ScanPairForm& form : pairs.forms) fixed[form.source] = fixed[form.target] = false;
@@ -185,8 +189,7 @@ bool Alignment::move_scans(const std::vector<Vector6>& twists, const DataFrame& 
   for (std::size_t i = 0; i < scans_.size(); ++i) {
     const Vector6& twist = twists[i];
     still_[i] = twist.head<3>().norm() < options_.icp.stop_rotation_rad &&
-                twist.tail<3>().norm() <
-                    options_.icp.stop_translation_fraction * 2 * frame.size_m;
+                twist.tail<3>().norm() < options_.icp.stop_translation_fraction * 2 * frame.size_m;
     all_still = all_still && still_[i];
     if (twist.isZero(0)) continue;
     const Eigen::Vector3d& c = frame.centre;
@@ -199,20 +202,30 @@ bool Alignment::move_scans(const std::vector<Vector6>& twists, const DataFrame& 
   return all_still;
 }
 
+std::vector<ScanCouple> Alignment::placed_couples() const {
+  std::vector<ScanCouple> couples;
+  for (std::size_t i = 0; i < scans_.size(); ++i)
+    for (std::size_t j = i + 1; j < scans_.size(); ++j)
+      if (placed_[i] && placed_[j]) couples.emplace_back(i, j);
+  return couples;
+}
+
 void Alignment::refine() {
   const DataFrame frame = shared_frame();
   JointGates gates = first_gates();
   JointPairs pairs;
+  pairs.couples = placed_couples();
   for (bool done = false; !done;) {
     std::vector<Pose> poses;
     for (const ScanPose& scan : result_.scans) poses.push_back(scan.world_from_scan);
-    pairs = pair_scans(scans_, poses, placed_, frame, gates);
+    pairs = pair_scans(scans_, poses, pairs.couples, frame, gates);
     gates.tukey_limit_m = pairs.tukey_limit_m;
     if (pairs.forms.empty() || result_.rounds == options_.max_rounds) break;
     done = move_scans(joint_step(pairs, frame), frame);
     ++result_.rounds;
     if (progress_) progress_("refine", double(result_.rounds) / options_.max_rounds);
   }
+  if (progress_) progress_("refine", 1);
   result_.pairs_used = pairs.forms.size() / 2;
   judge(pairs, frame);
 }
@@ -227,8 +240,7 @@ void Alignment::judge_scan(std::size_t i, const JointPairs& pairs, const DataFra
   scan.rms_m = pairs.rms_m[i];
   scan.inlier_fraction_of_source = pairs.paired_fraction[i];
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
-  const Eigen::Index open =
-      (solver.eigenvalues().array() < 1e-9 * solver.eigenvalues()[5]).count();
+  const Eigen::Index open = (solver.eigenvalues().array() < 1e-9 * solver.eigenvalues()[5]).count();
   scan.weak_directions = name_motions(solver.eigenvectors().leftCols(open), frame, origin_);
   scan.stop = !still_[i] ? Stop::iteration_limit : open > 0 ? Stop::degenerate : Stop::converged;
 }
@@ -237,15 +249,16 @@ void Alignment::judge(const JointPairs& pairs, const DataFrame& frame) {
   for (std::size_t i = 0; i < scans_.size(); ++i)
     if (placed_[i] && i != anchor_) judge_scan(i, pairs, frame);
   ScanPose& anchor = result_.scans[anchor_];
-  anchor.stop = pairs.forms.empty() && scans_.size() > 1 ? Stop::no_correspondences : Stop::converged;
+  anchor.stop =
+      pairs.forms.empty() && scans_.size() > 1 ? Stop::no_correspondences : Stop::converged;
   anchor.rms_m = pairs.rms_m[anchor_];
   anchor.inlier_fraction_of_source = pairs.paired_fraction[anchor_];
 }
 
 // Converged if all scans are; else the gravest of their reasons.
 Stop Alignment::overall() const {
-  for (const Stop stop : {Stop::too_few_points, Stop::no_correspondences, Stop::degenerate,
-                          Stop::iteration_limit})
+  for (const Stop stop :
+       {Stop::too_few_points, Stop::no_correspondences, Stop::degenerate, Stop::iteration_limit})
     for (const ScanPose& scan : result_.scans)
       if (scan.stop == stop) return stop;
   return Stop::converged;
@@ -262,22 +275,6 @@ MultiviewResult Alignment::run() {
 
 }  // namespace
 
-void check(const MultiviewOptions& options) {
-  check(options.icp);
-  if (!(options.thin_m >= 0))
-    throw Error(Trouble::usage, "align_scans: thin_m: " + std::to_string(options.thin_m) +
-                                    ", must be at least 0");
-  if (options.max_rounds < 1)
-    throw Error(Trouble::usage, "align_scans: max_rounds: " + std::to_string(options.max_rounds) +
-                                    ", must be at least 1");
-  if (!(options.min_overlap >= 0 && options.min_overlap <= 1))
-    throw Error(Trouble::usage, "align_scans: min_overlap: " + std::to_string(options.min_overlap) +
-                                    ", must be 0 to 1");
-  if (options.anchor < 0)
-    throw Error(Trouble::usage, "align_scans: anchor: " + std::to_string(options.anchor) +
-                                    ", must be at least 0");
-}
-
 MultiviewResult align_scans(std::span<const PointCloud> clouds, std::span<const Pose> guesses,
                             const MultiviewOptions& options, const Progress& progress) {
   const Stopwatch watch;
@@ -287,7 +284,7 @@ MultiviewResult align_scans(std::span<const PointCloud> clouds, std::span<const 
   for (std::size_t i = 0; i < guesses.size(); ++i)  // untouched poses keep their bits
     if (result.scans[i].stop == Stop::too_few_points ||
         result.scans[i].stop == Stop::no_correspondences || i == std::size_t(options.anchor))
-      result.scans[i].world_from_scan = guesses[i];
+      result.scans[i].world_from_scan = with_proper_rotation(guesses[i]);
   result.cost.seconds = watch.seconds();
   return result;
 }

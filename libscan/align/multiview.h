@@ -14,10 +14,10 @@ namespace scan {
 
 struct MultiviewOptions {
   IcpOptions icp = {};
-  double thin_m = 0;          // voxel side for the joint step; 0: from the data
-  int max_rounds = 20;        // correspondences found anew, then one Ceres solve
-  double min_overlap = 0.1;   // pairs below this inlier fraction do not count
-  int anchor = 0;             // the scan whose pose is kept
+  double thin_m = 0;         // voxel side for the joint step; 0: from the data
+  int max_rounds = 20;       // correspondences found anew, then one Ceres solve
+  double min_overlap = 0.1;  // pairs below this inlier fraction do not count
+  int anchor = 0;            // the scan whose pose is kept
 };
 
 // Throws scan::Error (usage) naming the option and its limit.
@@ -40,9 +40,9 @@ struct MultiviewResult {
   Cost cost;
 };
 
-// `clouds` in their scanner frames with normals; guesses world_from_scan. First each scan is added to
-// those already placed, nearest by predicted overlap first; then all poses but the anchor's are refined
-// together by Ceres over point-to-plane pairs between all overlapping scans.
+// `clouds` in their scanner frames with normals; guesses world_from_scan. First each scan is added
+// to those already placed, nearest by predicted overlap first; then all poses but the anchor's are
+// refined together by Ceres over point-to-plane pairs between all overlapping scans.
 MultiviewResult align_scans(std::span<const PointCloud> clouds, std::span<const Pose> guesses,
                             const MultiviewOptions& options = {}, const Progress& progress = {});
 

@@ -52,8 +52,8 @@ struct Information {
   }
 };
 
-// Whether most of the points lie on a surface. Then those that do not are its edges and say nothing;
-// else the points are marks of their own.
+// Whether most of the points lie on a surface. Then those that do not are its edges and say
+// nothing; else the points are marks of their own.
 bool is_surface(std::span<const std::uint32_t> used, const LocalSurface& surface) {
   std::size_t count = 0;
   for (const std::uint32_t i : used) count += surface.fit(i).shape == LocalShape::surface;
@@ -111,7 +111,8 @@ std::string name_turn(const Vector6& twist, const DataFrame& frame, const Eigen:
 
 }  // namespace
 
-TwistBasis weak_motions(std::span<const std::uint32_t> used, std::span<const Eigen::Vector3d> points,
+TwistBasis weak_motions(std::span<const std::uint32_t> used,
+                        std::span<const Eigen::Vector3d> points,
                         std::span<const Eigen::Vector3d> normals, LocalSurface& surface,
                         const DataFrame& frame) {
   const std::size_t stride = std::max<std::size_t>(1, used.size() / most_points);
@@ -120,8 +121,7 @@ TwistBasis weak_motions(std::span<const std::uint32_t> used, std::span<const Eig
   surface.prepare(sample);
   const Information sum = gather(sample, points, normals, surface, frame);
   Matrix6 limit = rounding_share * std::max(sum.apparent.trace() / 6, 1e-300) * Matrix6::Identity();
-  if (sum.noise_points > 0)
-    limit += noise_multiple * sum.points / sum.noise_points * sum.noise;
+  if (sum.noise_points > 0) limit += noise_multiple * sum.points / sum.noise_points * sum.noise;
   // A v = mu limit v, weak where mu < 1.
   const Eigen::LLT<Matrix6> factor(limit);
   Matrix6 whitened = factor.matrixL().solve(sum.apparent);

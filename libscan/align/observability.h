@@ -6,8 +6,8 @@
 // carries points out of their planes: v^T A v, A the sum of J^T J with J = (p x n, n), p about the
 // centre and in units of `size`. Normals that are off by d give v^T N v more with J = (p x d, d),
 // although nothing is fixed. N is measured: d is the difference between a normal and one that was
-// fitted to other neighbours of the same point. A motion is weak when v^T A v < 4 v^T N v; then noise
-// could account for a quarter or more of the apparent information.
+// fitted to other neighbours of the same point. A motion is weak when v^T A v < 4 v^T N v; then
+// noise could account for a quarter or more of the apparent information.
 #pragma once
 
 #include <span>
@@ -27,11 +27,12 @@ struct DataFrame {
   double size_m = 1;
 };
 
-// Orthonormal basis of the weak motions at the points `used` (indices into `points`, may repeat), as
-// twists about the frame's centre with the translation in units of its size; no columns: none is
-// weak. `normals` has one per point; with none the fits of `surface` stand in; where most points have no
-// surface around them, these count as marks that fix all three coordinates.
-TwistBasis weak_motions(std::span<const std::uint32_t> used, std::span<const Eigen::Vector3d> points,
+// Orthonormal basis of the weak motions at the points `used` (indices into `points`, may repeat),
+// as twists about the frame's centre with the translation in units of its size; no columns: none is
+// weak. `normals` has one per point; with none the fits of `surface` stand in; where most points
+// have no surface around them, these count as marks that fix all three coordinates.
+TwistBasis weak_motions(std::span<const std::uint32_t> used,
+                        std::span<const Eigen::Vector3d> points,
                         std::span<const Eigen::Vector3d> normals, LocalSurface& surface,
                         const DataFrame& frame);
 

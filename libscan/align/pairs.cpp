@@ -45,7 +45,14 @@ LocalCloud localise(const PointCloud& cloud) {
   return local;
 }
 
-Pose local_pose(const Pose& target_from_source, const LocalCloud& source, const LocalCloud& target) {
+Pose with_proper_rotation(const Pose& pose) {
+  const Eigen::Matrix3d nearest = nearest_rotation(pose.linear());
+  const bool proper = (pose.linear() - nearest).norm() < 1e-14;
+  return proper ? pose : make_pose(nearest, pose.translation());
+}
+
+Pose local_pose(const Pose& target_from_source, const LocalCloud& source,
+                const LocalCloud& target) {
   return make_pose(target_from_source.linear(), target_from_source * source.origin - target.origin);
 }
 
@@ -54,7 +61,8 @@ Pose global_pose(const Pose& local, const LocalCloud& source, const LocalCloud& 
                    target.origin + local.translation() - local.linear() * source.origin);
 }
 
-PairFinder::PairFinder(const LocalCloud& source, const LocalCloud& target, const IcpOptions& options)
+PairFinder::PairFinder(const LocalCloud& source, const LocalCloud& target,
+                       const IcpOptions& options)
     : source_(source),
       target_(target),
       options_(options),
@@ -98,7 +106,8 @@ double PairFinder::mutual_median_m(const Pose& pose, const std::vector<Match>& m
     if (match.target == no_partner) return;
     const auto back = source_search_.nearest(source_from_target * target_.points[match.target]);
     // Not by index: repeated points are each other's equal; and rounding may part equal distances.
-    if (std::sqrt(back->distance2_m2) >= match.distance_m * (1 - 1e-9)) distances[i] = match.distance_m;
+    if (std::sqrt(back->distance2_m2) >= match.distance_m * (1 - 1e-9))
+      distances[i] = match.distance_m;
   });
   std::erase(distances, -1);
   return quantile(distances, 0.5);
@@ -113,11 +122,13 @@ Gates PairFinder::tightened(const Gates& previous, const Pose& pose,
     gates.distance_m = gate_in_medians * std::max(mutual_median_m(pose, matches), least);
   }
   gates.distance_m = std::min(gates.distance_m, previous.distance_m);
+  gates.residual_m = std::min(previous.residual_m, gates.distance_m);
+  if (!(options_.trim_fraction > 0)) return gates;
   std::vector<double> residuals;
   for (const Match& match : matches)
     if (match.target != no_partner && match.distance_m <= gates.distance_m)
       residuals.push_back(match.residual_m);
-  gates.residual_m = std::min(previous.residual_m, quantile(residuals, 1 - options_.trim_fraction));
+  gates.residual_m = std::min(gates.residual_m, quantile(residuals, 1 - options_.trim_fraction));
   return gates;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// Correspondences of one pair of clouds: nearest partners, the gates they pass, what the rest costs.
+// Correspondences of one pair of clouds: nearest partners, the gates they pass, what the rest
+// costs.
 #pragma once
 
 #include <limits>
@@ -23,6 +24,9 @@ struct LocalCloud {
 };
 
 LocalCloud localise(const PointCloud& cloud);
+
+// The pose with the nearest rotation in place of its matrix; a rotation to rounding keeps its bits.
+Pose with_proper_rotation(const Pose& pose);
 
 // A pose between the clouds' own frames as one between their local frames, and back.
 Pose local_pose(const Pose& target_from_source, const LocalCloud& source, const LocalCloud& target);
@@ -50,10 +54,10 @@ class PairFinder {
 
   std::vector<Match> find(const Pose& pose, double max_distance_m) const;
 
-  // Gates that fit the matches at `pose`, never wider than `previous`. The distance is the given one,
-  // or three times the median distance of those matches that are each other's nearest (what has no
-  // counterpart pairs one-sidedly and so does not widen the gate), but not less than three times the
-  // target's spacing. The residual leaves out the worst `trim_fraction`.
+  // Gates that fit the matches at `pose`, never wider than `previous`. The distance is the given
+  // one, or three times the median distance of those matches that are each other's nearest (what
+  // has no counterpart pairs one-sidedly and so does not widen the gate), but not less than three
+  // times the target's spacing. The residual leaves out the worst `trim_fraction`.
   Gates tightened(const Gates& previous, const Pose& pose, const std::vector<Match>& matches) const;
 
   // Source points whose matches pass both gates.

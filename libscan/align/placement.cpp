@@ -29,7 +29,8 @@ struct Candidate {
 class Placement {
  public:
   Placement(std::span<const PointCloud> clouds, std::span<const KdTree> searches,
-            const MultiviewOptions& options, std::vector<ScanPose>& scans, std::vector<bool>& placed)
+            const MultiviewOptions& options, std::vector<ScanPose>& scans,
+            std::vector<bool>& placed)
       : clouds_(clouds), searches_(searches), options_(options), scans_(scans), placed_(placed) {}
 
   void run(const Progress& progress);
@@ -52,8 +53,8 @@ double Placement::overlap_with_placed(std::size_t scan) const {
   double sum = 0;
   for (std::size_t j = 0; j < clouds_.size(); ++j)
     if (placed_[j])
-      sum += predicted_overlap(clouds_[scan], scans_[scan].world_from_scan, clouds_[j], searches_[j],
-                               scans_[j].world_from_scan, distance_m);
+      sum += predicted_overlap(clouds_[scan], scans_[scan].world_from_scan, clouds_[j],
+                               searches_[j], scans_[j].world_from_scan, distance_m);
   return sum;
 }
 

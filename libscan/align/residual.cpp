@@ -6,7 +6,9 @@
 
 namespace scan {
 
-Eigen::Vector3d PointToPoint::value(const PointPair& pair) { return pair.moved - pair.target; }
+Eigen::Vector3d PointToPoint::value(const PointPair& pair) {
+  return pair.moved - pair.target;
+}
 
 Eigen::Matrix<double, 3, 6> PointToPoint::jacobian(const PointPair& pair,
                                                    const Eigen::Vector3d& centre) {

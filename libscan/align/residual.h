@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// What a pair of points contributes to an alignment: its residual and how a small motion changes it.
+// What a pair of points contributes to an alignment: its residual and how a small motion changes
+// it.
 //
 // The motion is a left perturbation about `centre` (a point near the data, so that far coordinates
 // cost no digits): x -> centre + exp(twist) (x - centre), twist = (rotation rad, translation m).

@@ -63,8 +63,8 @@ int rank_of(const Eigen::Vector3d& singular, const Moments& m, double total,
   return static_cast<int>((singular.array() > limit).count());
 }
 
-// Umeyama 1991, eq. 40-43: R = U diag(1, 1, det(U V^T)) V^T. Rank 1: the shortest turn between the two
-// lines. The quaternion brings the product of two nearly orthogonal factors back onto SO(3).
+// Umeyama 1991, eq. 40-43: R = U diag(1, 1, det(U V^T)) V^T. Rank 1: the shortest turn between the
+// two lines. The quaternion brings the product of two nearly orthogonal factors back onto SO(3).
 Eigen::Matrix3d best_rotation(const Eigen::JacobiSVD<Eigen::Matrix3d>& svd, int rank) {
   if (rank == 0) return Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d &u = svd.matrixU(), &v = svd.matrixV();
@@ -87,8 +87,10 @@ RigidFit rigid_fit(std::span<const Eigen::Vector3d> source, std::span<const Eige
   const Eigen::Vector3d source_mean = weighted_mean(source, weights, total);
   const Eigen::Vector3d target_mean = weighted_mean(target, weights, total);
   const Moments moments = centred_moments(source, target, weights, source_mean, target_mean);
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments.cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double largest = std::max(source_mean.cwiseAbs().maxCoeff(), target_mean.cwiseAbs().maxCoeff());
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments.cross,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double largest =
+      std::max(source_mean.cwiseAbs().maxCoeff(), target_mean.cwiseAbs().maxCoeff());
   fit.rank = rank_of(svd.singularValues(), moments, total, largest);
   const Eigen::Matrix3d rotation = best_rotation(svd, fit.rank);
   fit.target_from_source = make_pose(rotation, target_mean - rotation * source_mean);

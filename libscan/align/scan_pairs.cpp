@@ -42,11 +42,11 @@ class Round {
         const DataFrame& frame, const JointGates& gates)
       : scans_(scans), poses_(poses), frame_(frame), gates_(gates) {}
 
-  JointPairs run(const std::vector<bool>& use);
+  JointPairs run(const std::vector<ScanCouple>& couples);
 
  private:
-  void find_all(const std::vector<bool>& use);
-  void drop_small_overlaps();
+  void find_all(const std::vector<ScanCouple>& couples);
+  std::vector<ScanCouple> drop_small_overlaps();
   PointPair pair(const DirectedPairs& pairs, std::size_t k) const;
   double median_residual_m() const;
   ScanPairForm form_of(const DirectedPairs& pairs, double tukey_limit_m) const;
@@ -60,13 +60,11 @@ class Round {
   std::vector<DirectedPairs> directed_;  // (i, j) and (j, i) side by side
 };
 
-void Round::find_all(const std::vector<bool>& use) {
-  for (std::size_t i = 0; i < scans_.size(); ++i)
-    for (std::size_t j = i + 1; j < scans_.size(); ++j) {
-      if (!use[i] || !use[j]) continue;
-      directed_.push_back({i, j, {}, {}});
-      directed_.push_back({j, i, {}, {}});
-    }
+void Round::find_all(const std::vector<ScanCouple>& couples) {
+  for (const auto& [i, j] : couples) {
+    directed_.push_back({i, j, {}, {}});
+    directed_.push_back({j, i, {}, {}});
+  }
   parallel_for(
       directed_.size(),
       [&](std::size_t k) {
@@ -79,18 +77,24 @@ void Round::find_all(const std::vector<bool>& use) {
       1);
 }
 
-void Round::drop_small_overlaps() {
+// Returns the couples with at least half of the least overlap.
+std::vector<ScanCouple> Round::drop_small_overlaps() {
   std::vector<DirectedPairs> kept;
+  std::vector<ScanCouple> hopeful;
   const auto share = [&](const DirectedPairs& pairs) {
     return static_cast<double>(pairs.from.size()) /
            static_cast<double>(scans_[pairs.source]->cloud.size());
   };
   for (std::size_t k = 0; k < directed_.size(); k += 2) {
-    if (std::max(share(directed_[k]), share(directed_[k + 1])) < gates_.min_overlap) continue;
+    const double overlap = std::max(share(directed_[k]), share(directed_[k + 1]));
+    if (overlap >= gates_.min_overlap / 2)
+      hopeful.emplace_back(directed_[k].source, directed_[k].target);
+    if (overlap < gates_.min_overlap) continue;
     kept.push_back(std::move(directed_[k]));
     kept.push_back(std::move(directed_[k + 1]));
   }
   directed_ = std::move(kept);
+  return hopeful;
 }
 
 PointPair Round::pair(const DirectedPairs& pairs, std::size_t k) const {
@@ -157,15 +161,16 @@ void Round::summarise(JointPairs& result) const {
   }
   for (std::size_t i = 0; i < scans_.size(); ++i) {
     const auto count = static_cast<double>(std::count(paired[i].begin(), paired[i].end(), true));
-    result.paired_fraction.push_back(paired[i].empty() ? 0 : count / static_cast<double>(paired[i].size()));
+    result.paired_fraction.push_back(
+        paired[i].empty() ? 0 : count / static_cast<double>(paired[i].size()));
     result.rms_m.push_back(weights[i] > 0 ? std::sqrt(squares[i] / weights[i]) : 0);
   }
 }
 
-JointPairs Round::run(const std::vector<bool>& use) {
-  find_all(use);
-  drop_small_overlaps();
+JointPairs Round::run(const std::vector<ScanCouple>& couples) {
+  find_all(couples);
   JointPairs result;
+  result.couples = drop_small_overlaps();
   const double fresh_m = tukey_limit_in_sigmas * sigma_from_median * median_residual_m();
   result.tukey_limit_m =
       std::max(gates_.tukey_limit_m > 0 ? std::min(fresh_m, gates_.tukey_limit_m) : fresh_m,
@@ -185,9 +190,9 @@ PreparedScan::PreparedScan(PointCloud thinned)
     : cloud(std::move(thinned)), search(cloud.points), surface(cloud.points) {}
 
 JointPairs pair_scans(const std::vector<std::unique_ptr<PreparedScan>>& scans,
-                      const std::vector<Pose>& poses, const std::vector<bool>& use,
+                      const std::vector<Pose>& poses, const std::vector<ScanCouple>& couples,
                       const DataFrame& frame, const JointGates& gates) {
-  return Round(scans, poses, frame, gates).run(use);
+  return Round(scans, poses, frame, gates).run(couples);
 }
 
 }  // namespace scan

@@ -13,9 +13,12 @@ namespace {
 using Eigen::Vector3d;
 constexpr IcpMethod both[] = {IcpMethod::point_to_point, IcpMethod::point_to_plane};
 
-double pose_difference(const Pose& a, const Pose& b) { return (a.matrix() - b.matrix()).norm(); }
+double pose_difference(const Pose& a, const Pose& b) {
+  return (a.matrix() - b.matrix()).norm();
+}
 
-// The same points before and after the motion: zero residual at the truth, so it is met to rounding.
+// The same points before and after the motion: zero residual at the truth, so it is met to
+// rounding.
 TEST(Icp, RecoversANoiseFreeMotionExactly) {
   const PointCloud source = test::bumpy_surface(2000, 1);
   RandomStream random(2, 0, 0);
@@ -39,7 +42,8 @@ TEST(Icp, PointToPlaneJoinsCloudsWithoutCommonPoints) {
   const auto [source, other] = test::split(test::bumpy_surface(20000, 3), 4);
   RandomStream random(5, 0, 0);
   const Pose truth = test::random_pose(random, 0.5, 1);
-  const IcpResult result = icp(source, transformed(truth, other), truth * test::random_pose(random, 0.05, 0.05));
+  const IcpResult result =
+      icp(source, transformed(truth, other), truth * test::random_pose(random, 0.05, 0.05));
   EXPECT_EQ(result.stop, Stop::converged);
   EXPECT_LT(translation_distance_m(result.target_from_source, truth), 0.15e-3);
   EXPECT_LT(rotation_distance_rad(result.target_from_source, truth), 0.15e-3);
@@ -56,7 +60,8 @@ TEST(Icp, PartialOverlapDoesNotPullTheCloudsTogether) {
   };
   RandomStream random(8, 0, 0);
   // 1.3 m of 2 m each: 46 % of the source's points have a counterpart.
-  const IcpResult result = icp(part(a, -1, 0.3), part(b, -0.3, 1), test::random_pose(random, 0.03, 0.03));
+  const IcpResult result =
+      icp(part(a, -1, 0.3), part(b, -0.3, 1), test::random_pose(random, 0.03, 0.03));
   EXPECT_EQ(result.stop, Stop::converged);
   EXPECT_LT(translation_distance_m(result.target_from_source, Pose::Identity()), 1e-3);
   EXPECT_LT(rotation_distance_rad(result.target_from_source, Pose::Identity()), 1e-3);
@@ -84,7 +89,8 @@ TEST(Icp, InformationIsThatOfTheResidualsAboutTheTargetsOrigin) {
   const IcpResult result = icp(source, target, Pose::Identity());
   // n n^T summed over the pairs is the lower right block times sigma^2.
   const double trace = result.information.diagonal().tail<3>().sum();
-  EXPECT_NEAR(trace * result.rms_m * result.rms_m, double(result.pairs), 1e-6 * double(result.pairs));
+  EXPECT_NEAR(trace * result.rms_m * result.rms_m, double(result.pairs),
+              1e-6 * double(result.pairs));
   EXPECT_NEAR((result.information - result.information.transpose()).norm(), 0,
               1e-9 * result.information.norm());
   // Moving the target's frame by c maps twists by w -> w, t -> t - w x c... : J^T I J.
@@ -97,6 +103,24 @@ TEST(Icp, InformationIsThatOfTheResidualsAboutTheTargetsOrigin) {
   j.bottomLeftCorner<3, 3>() = -cross_matrix(c);
   EXPECT_LT((far.information - j.transpose() * result.information * j).norm(),
             1e-6 * far.information.norm());
+}
+
+// With one gate that all pairs pass and no trimming the objective is the rms itself; a start far
+// off makes full steps overshoot.
+TEST(Icp, TheObjectiveNeverRises) {
+  const auto [source, target] = test::split(test::bumpy_surface(3000, 18), 19);
+  RandomStream random(20, 0, 0);
+  for (const IcpMethod method : both)
+    for (const double off : {0.05, 0.3, 0.6, 1.0, 1.5}) {
+      const IcpResult result = icp(source, target, test::random_pose(random, off, off),
+                                   {.method = method,
+                                    .max_pair_distance_m = 10,
+                                    .max_normal_angle_rad = std::numbers::pi,
+                                    .trim_fraction = 0});
+      ASSERT_EQ(result.pairs, source.size());
+      for (std::size_t i = 1; i < result.history_rms_m.size(); ++i)
+        EXPECT_LE(result.history_rms_m[i], result.history_rms_m[i - 1] * (1 + 1e-12)) << off;
+    }
 }
 
 TEST(Icp, TellsEachIteration) {

@@ -57,8 +57,8 @@ double worst_m(const PointCloud& cloud, const Pose& pose, const Pose& truth) {
 }
 
 // Normals from 16 neighbours at a spacing of 0.04 m bend each residual by up to about 1 mm of
-// curvature error, of one sign; noise of 1 mm adds 1 mm / sqrt(pairs). The loop must not collect it:
-// every scan within 2 mm, though neighbouring pairs alone could add up.
+// curvature error, of one sign; noise of 1 mm adds 1 mm / sqrt(pairs). The loop must not collect
+// it: every scan within 2 mm, though neighbouring pairs alone could add up.
 TEST(AlignScans, ATurntableClosesItsLoop) {
   const Turntable t = turntable(8, 0.001);
   const MultiviewResult result = align_scans(t.clouds, t.guesses);
@@ -101,7 +101,9 @@ TEST(AlignScans, FarFromTheOriginItIsTheSame) {
   EXPECT_EQ(a.rounds, b.rounds);
   for (std::size_t i = 0; i < 5; ++i) {  // coordinates there are rounded to 1e-9 m
     EXPECT_LT((b.scans[i].world_from_scan.translation() - offset -
-               a.scans[i].world_from_scan.translation()).norm(), 1e-8);
+               a.scans[i].world_from_scan.translation())
+                  .norm(),
+              1e-8);
     EXPECT_LT((b.scans[i].world_from_scan.linear() - a.scans[i].world_from_scan.linear()).norm(),
               1e-8);
   }
@@ -109,7 +111,8 @@ TEST(AlignScans, FarFromTheOriginItIsTheSame) {
 
 TEST(AlignScans, ScansOfOnePlaneAreDegenerateAndStayWhereTheyWere) {
   PointCloud a = test::plane(3000, 1), b = test::plane(3000, 2);
-  const Pose guess = make_pose(Eigen::AngleAxisd(0.02, Vector3d::UnitX()).toRotationMatrix(), {0.3, 0.1, 0.05});
+  const Pose guess =
+      make_pose(Eigen::AngleAxisd(0.02, Vector3d::UnitX()).toRotationMatrix(), {0.3, 0.1, 0.05});
   const MultiviewResult result =
       align_scans(std::vector{a, b}, std::vector<Pose>{Pose::Identity(), guess});
   EXPECT_EQ(result.scans[1].stop, Stop::degenerate);
@@ -128,7 +131,8 @@ TEST(AlignScans, ThreadsDoNotChangeABit) {
   }
   for (std::size_t i = 0; i < 6; ++i)
     for (const MultiviewResult& result : results)
-      EXPECT_EQ(result.scans[i].world_from_scan.matrix(), results[0].scans[i].world_from_scan.matrix());
+      EXPECT_EQ(result.scans[i].world_from_scan.matrix(),
+                results[0].scans[i].world_from_scan.matrix());
 }
 
 TEST(AlignScans, ReportsProgress) {
@@ -138,7 +142,7 @@ TEST(AlignScans, ReportsProgress) {
     (step == "place" ? placed : refined) = share;
   });
   EXPECT_EQ(placed, 1);
-  EXPECT_GT(refined, 0);
+  EXPECT_EQ(refined, 1);
 }
 
 TEST(AlignScans, SmallAndEmptyInputsAreAnswered) {
@@ -149,8 +153,10 @@ TEST(AlignScans, SmallAndEmptyInputsAreAnswered) {
                                              std::vector<Pose>{Pose::Identity(), Pose::Identity()});
   EXPECT_EQ(result.scans[1].stop, Stop::too_few_points);
   EXPECT_THROW(align_scans(std::vector{cloud}, {}), Error);
-  EXPECT_THROW(align_scans(std::vector{cloud}, std::vector{Pose::Identity()}, {.anchor = 1}), Error);
-  EXPECT_THROW(align_scans(std::vector{cloud}, std::vector{Pose::Identity()}, {.max_rounds = 0}), Error);
+  EXPECT_THROW(align_scans(std::vector{cloud}, std::vector{Pose::Identity()}, {.anchor = 1}),
+               Error);
+  EXPECT_THROW(align_scans(std::vector{cloud}, std::vector{Pose::Identity()}, {.max_rounds = 0}),
+               Error);
 }
 
 }  // namespace

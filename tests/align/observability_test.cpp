@@ -62,7 +62,8 @@ TEST(WeakMotions, AreFoundWithoutNormals) {
 // Noise of 1 % of the shape tilts the fitted normals by some degrees: false information.
 TEST(WeakMotions, AreNotHiddenByNoise) {
   for (Case& c : cases()) {
-    if (std::string_view(c.name) == "bumpy surface" || std::string_view(c.name) == "plane") continue;
+    if (std::string_view(c.name) == "bumpy surface" || std::string_view(c.name) == "plane")
+      continue;
     test::add_noise(c.cloud, 0.01, 2);
     const std::vector<Vector3d> exact = c.cloud.normals;
     test::estimate_normals(c.cloud, [](const Vector3d& x) { return x; });

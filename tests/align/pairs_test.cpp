@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 
 TEST(LocalCloud, PosesGoThereAndBack) {
   RandomStream random(1, 0, 0);
-  const PointCloud a = test::bumpy_surface(100, 1), b = transformed(test::random_pose(random, 1, 5), a);
+  const PointCloud a = test::bumpy_surface(100, 1),
+                   b = transformed(test::random_pose(random, 1, 5), a);
   const LocalCloud source = localise(a), target = localise(b);
   const Pose pose = test::random_pose(random, 2, 3);
   const Pose local = local_pose(pose, source, target);

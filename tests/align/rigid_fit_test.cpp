@@ -52,7 +52,7 @@ Eigen::Matrix3d horn_rotation(const Points& source, const Points& target,
   for (std::size_t i = 0; i < source.size(); ++i)
     m += weights[i] * (source[i] - s_mean) * (target[i] - t_mean).transpose();
   Eigen::Matrix4d n;
-  n << m.trace(), m(1, 2) - m(2, 1), m(2, 0) - m(0, 2), m(0, 1) - m(1, 0),  //
+  n << m.trace(), m(1, 2) - m(2, 1), m(2, 0) - m(0, 2), m(0, 1) - m(1, 0),   //
       0, m(0, 0) - m(1, 1) - m(2, 2), m(0, 1) + m(1, 0), m(2, 0) + m(0, 2),  //
       0, 0, -m(0, 0) + m(1, 1) - m(2, 2), m(1, 2) + m(2, 1),                 //
       0, 0, 0, -m(0, 0) - m(1, 1) + m(2, 2);
@@ -86,7 +86,8 @@ TEST(RigidFit, AgreesWithHornsQuaternionOnNoisyWeightedPairs) {
       weights.push_back(random.uniform());
     }
     const Eigen::Matrix3d rotation = rigid_fit(source, target, weights).target_from_source.linear();
-    // Eigenvectors are good to rounding over the gap of the eigenvalues, here above 0.1 of the norm.
+    // Eigenvectors are good to rounding over the gap of the eigenvalues, here above 0.1 of the
+    // norm.
     EXPECT_LT((rotation - horn_rotation(source, target, weights)).norm(), 1e-12);
   }
 }
@@ -97,7 +98,8 @@ TEST(RigidFit, NoOtherMotionIsBetter) {
   const RigidFit fit = rigid_fit(source, target);
   const auto sum2 = [&](const Pose& pose) {
     double sum = 0;
-    for (std::size_t i = 0; i < source.size(); ++i) sum += (pose * source[i] - target[i]).squaredNorm();
+    for (std::size_t i = 0; i < source.size(); ++i)
+      sum += (pose * source[i] - target[i]).squaredNorm();
     return sum;
   };
   const double least = sum2(fit.target_from_source);
@@ -116,7 +118,9 @@ TEST(RigidFit, WeightsCountLikeRepetition) {
   for (int i = 0; i < 2; ++i) s.push_back(source[1]), t.push_back(target[1]);
   const std::vector<double> weights{1, 3, 1, 1, 1};
   EXPECT_LT((rigid_fit(source, target, weights).target_from_source.matrix() -
-             rigid_fit(s, t).target_from_source.matrix()).norm(), 1e-13);
+             rigid_fit(s, t).target_from_source.matrix())
+                .norm(),
+            1e-13);
 }
 
 TEST(RigidFit, AMirrorImageGetsARotation) {
@@ -137,7 +141,8 @@ TEST(RigidFit, CoplanarPointsHaveRankTwoAndAUniqueRotation) {
   expect_proper(fit.target_from_source);
 }
 
-// Of all rotations that carry one line onto the other the one by the angle between them is smallest.
+// Of all rotations that carry one line onto the other the one by the angle between them is
+// smallest.
 TEST(RigidFit, CollinearPointsGetTheSmallestRotation) {
   for (const double angle : {0.0, 0.7, std::numbers::pi}) {
     const Vector3d a = Vector3d(1, 2, -1).normalized(), axis = a.unitOrthogonal();

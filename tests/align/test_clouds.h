@@ -28,7 +28,8 @@ inline Pose random_pose(RandomStream& random, double angle_rad, double shift_m) 
 }
 
 // Normals by a plane fit over 16 neighbours, turned towards `towards`.
-inline void estimate_normals(PointCloud& cloud, const std::function<Vector3d(const Vector3d&)>& towards) {
+inline void estimate_normals(PointCloud& cloud,
+                             const std::function<Vector3d(const Vector3d&)>& towards) {
   const KdTree tree(cloud.points);
   cloud.normals.clear();
   std::vector<Neighbour> found;
@@ -45,8 +46,8 @@ inline void estimate_normals(PointCloud& cloud, const std::function<Vector3d(con
   }
 }
 
-// A height field with bumps of several sizes, extent 2 x 2 m, and its exact normals: every motion is
-// fixed by it.
+// A height field with bumps of several sizes, extent 2 x 2 m, and its exact normals: every motion
+// is fixed by it.
 inline PointCloud bumpy_surface(std::size_t count, std::uint64_t seed) {
   RandomStream random(seed, 0, 0);
   PointCloud cloud;

@@ -32,10 +32,14 @@ inline PointCloud corridor(std::size_t count, std::uint64_t seed) {
   return sampled(count, seed, [](RandomStream& r) {
     const double x = 30 * r.uniform() - 15, u = 2 * r.uniform() - 1;
     switch (r.bits32() % 4) {
-      case 0: return std::pair(Vector3d(x, u, -1), Vector3d(0, 0, 1));
-      case 1: return std::pair(Vector3d(x, u, 1), Vector3d(0, 0, -1));
-      case 2: return std::pair(Vector3d(x, -1, u), Vector3d(0, 1, 0));
-      default: return std::pair(Vector3d(x, 1, u), Vector3d(0, -1, 0));
+      case 0:
+        return std::pair(Vector3d(x, u, -1), Vector3d(0, 0, 1));
+      case 1:
+        return std::pair(Vector3d(x, u, 1), Vector3d(0, 0, -1));
+      case 2:
+        return std::pair(Vector3d(x, -1, u), Vector3d(0, 1, 0));
+      default:
+        return std::pair(Vector3d(x, 1, u), Vector3d(0, -1, 0));
     }
   });
 }

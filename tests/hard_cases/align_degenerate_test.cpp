@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(BothMethods, HardScene,
                          testing::Values(IcpMethod::point_to_point, IcpMethod::point_to_plane),
                          [](const auto& method) {
                            return method.param == IcpMethod::point_to_point ? "PointToPoint"
-                                                                          : "PointToPlane";
+                                                                            : "PointToPlane";
                          });
 
 PointCloud noisy(PointCloud cloud, double sigma_m, std::uint64_t seed) {
@@ -51,7 +51,8 @@ TEST_P(HardScene, APlaneIsAlignedInHeightAndTiltOnly) {
   // The guess's centre, kept; tilting by 1 degree about it moves it by nothing.
   EXPECT_LT((pose.translation() - guess.translation()).head<2>().norm(), 1e-3);
   const Vector3d x_guess = guess.linear().col(0), x = pose.linear().col(0);
-  EXPECT_NEAR(deg_from_rad(std::atan2(x.y(), x.x()) - std::atan2(x_guess.y(), x_guess.x())), 0, 0.01);
+  EXPECT_NEAR(deg_from_rad(std::atan2(x.y(), x.x()) - std::atan2(x_guess.y(), x_guess.x())), 0,
+              0.01);
   if (GetParam() == IcpMethod::point_to_plane) {
     // 5 mm noise over 20,000 points: 50 um in height and 2e-5 rad in tilt, five times that allowed
     // (partners' normals tilt each residual by a further 0.02 rad * 0.03 m).
@@ -60,7 +61,8 @@ TEST_P(HardScene, APlaneIsAlignedInHeightAndTiltOnly) {
   }
 }
 
-// H6: a corridor of 30 m with 1 cm noise, started half a metre along it; peers drift 0.24 to 0.66 m.
+// H6: a corridor of 30 m with 1 cm noise, started half a metre along it; peers drift 0.24 to 0.66
+// m.
 TEST_P(HardScene, ACorridorKeepsThePlaceAlongIt) {
   const PointCloud target = noisy(test::corridor(20000, 1), 0.01, 2);
   const PointCloud source = noisy(test::corridor(20000, 3), 0.01, 4);
@@ -113,8 +115,8 @@ TEST(HardFeature, AFinDecidesTheTurnOfACylinder) {
   EXPECT_LT(rotation_angle_rad(result.target_from_source.linear()), 1e-3);
 }
 
-// H14: nine points in ten on a near wall; the far structure alone fixes the slides along the wall. The
-// start keeps it within the automatic gate of three spacings (7 mm on the wall).
+// H14: nine points in ten on a near wall; the far structure alone fixes the slides along the wall.
+// The start keeps it within the automatic gate of three spacings (7 mm on the wall).
 TEST(HardFeature, FarStructureDecidesWhatANearWallLeavesOpen) {
   const auto scene = [](std::uint64_t seed) {
     return test::sampled(20000, seed, [](RandomStream& r) {
@@ -124,8 +126,7 @@ TEST(HardFeature, FarStructureDecidesWhatANearWallLeavesOpen) {
       return std::pair(Vector3d(10 + u, 2 + v, -1), Vector3d(0, 0, 1));
     });
   };
-  const IcpResult result =
-      icp(scene(1), scene(2), pose_of({0, 1, 1}, 0.001, {0.01, 0.01, 0.01}));
+  const IcpResult result = icp(scene(1), scene(2), pose_of({0, 1, 1}, 0.001, {0.01, 0.01, 0.01}));
   EXPECT_EQ(result.stop, Stop::converged);
   EXPECT_LT(result.target_from_source.translation().norm(), 1e-3);
 }

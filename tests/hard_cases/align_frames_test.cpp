@@ -35,13 +35,14 @@ INSTANTIATE_TEST_SUITE_P(BothMethods, HardFrame,
                          testing::Values(IcpMethod::point_to_point, IcpMethod::point_to_plane),
                          [](const auto& method) {
                            return method.param == IcpMethod::point_to_point ? "PointToPoint"
-                                                                          : "PointToPlane";
+                                                                            : "PointToPlane";
                          });
 
-// H8: UTM, earth-centred, and farther. Coordinates there are rounded by 2^-53 of their size, so is the
-// pose, relative to an extent of 2 m; 4 such roundings meet.
+// H8: UTM, earth-centred, and farther. Coordinates there are rounded by 2^-53 of their size, so is
+// the pose, relative to an extent of 2 m; 4 such roundings meet.
 TEST_P(HardFrame, FarFromTheOriginThePoseIsTheSame) {
-  for (const Vector3d& offset : {Vector3d(5e5, 5.4e6, 0), Vector3d(0, 6.378e6, 0), Vector3d(1e6, 1e7, 0)}) {
+  for (const Vector3d& offset :
+       {Vector3d(5e5, 5.4e6, 0), Vector3d(0, 6.378e6, 0), Vector3d(1e6, 1e7, 0)}) {
     PointCloud far_source = source, far_target = target;
     for (Vector3d& x : far_source.points) x += offset;
     for (Vector3d& x : far_target.points) x += offset;
@@ -50,10 +51,13 @@ TEST_P(HardFrame, FarFromTheOriginThePoseIsTheSame) {
     const double rounding_m = 4 * offset.norm() * 0x1p-53;
     EXPECT_EQ(far.stop, reference.stop);
     EXPECT_EQ(far.iterations, reference.iterations);
-    EXPECT_LT((far.target_from_source.linear() - reference.target_from_source.linear()).norm(), rounding_m);
+    EXPECT_LT((far.target_from_source.linear() - reference.target_from_source.linear()).norm(),
+              rounding_m);
     for (const std::size_t i : {0u, 1000u, 2000u})
       EXPECT_LT((far.target_from_source * far_source.points[i] - offset -
-                 reference.target_from_source * source.points[i]).norm(), rounding_m);
+                 reference.target_from_source * source.points[i])
+                    .norm(),
+                rounding_m);
   }
 }
 
@@ -66,9 +70,12 @@ TEST_P(HardFrame, TheUnitDoesNotMatter) {
     const IcpResult scaled =
         icp(s, t, make_pose(guess.linear(), scale * guess.translation()), options());
     EXPECT_EQ(scaled.iterations, reference.iterations) << scale;
-    EXPECT_LT((scaled.target_from_source.linear() - reference.target_from_source.linear()).norm(), 1e-10);
+    EXPECT_LT((scaled.target_from_source.linear() - reference.target_from_source.linear()).norm(),
+              1e-10);
     EXPECT_LT((scaled.target_from_source.translation() / scale -
-               reference.target_from_source.translation()).norm(), 1e-10);
+               reference.target_from_source.translation())
+                  .norm(),
+              1e-10);
   }
 }
 
@@ -80,18 +87,24 @@ TEST_P(HardFrame, TheFrameDoesNotMatter) {
     const IcpResult turned = icp(transformed(frame, source), transformed(frame, target),
                                  frame * guess * frame.inverse(), options());
     EXPECT_EQ(turned.iterations, reference.iterations);
-    EXPECT_LT((frame.inverse() * turned.target_from_source * frame).matrix().isApprox(
-                  reference.target_from_source.matrix(), 1e-10) ? 0 : 1, 1);
+    EXPECT_LT((frame.inverse() * turned.target_from_source * frame)
+                      .matrix()
+                      .isApprox(reference.target_from_source.matrix(), 1e-10)
+                  ? 0
+                  : 1,
+              1);
   }
 }
 
 // H12: the start and the truth are half a turn apart from the identity; logarithms meet pi.
 TEST_P(HardFrame, HalfATurnIsAnOrdinaryRotation) {
   for (const double angle : {std::numbers::pi, std::numbers::pi - 1e-9}) {
-    const Pose turn = make_pose(Eigen::AngleAxisd(angle, Vector3d(0.6, 0, 0.8)).toRotationMatrix(), {1, 2, 3});
+    const Pose turn =
+        make_pose(Eigen::AngleAxisd(angle, Vector3d(0.6, 0, 0.8)).toRotationMatrix(), {1, 2, 3});
     const IcpResult turned = icp(source, transformed(turn, target), turn * guess, options());
     EXPECT_TRUE((turn.inverse() * turned.target_from_source)
-                    .matrix().isApprox(reference.target_from_source.matrix(), 1e-10));
+                    .matrix()
+                    .isApprox(reference.target_from_source.matrix(), 1e-10));
     EXPECT_NEAR(turned.target_from_source.linear().determinant(), 1, 4e-15);
   }
 }

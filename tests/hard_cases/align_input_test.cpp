@@ -20,7 +20,7 @@ INSTANTIATE_TEST_SUITE_P(BothMethods, HardInput,
                          testing::Values(IcpMethod::point_to_point, IcpMethod::point_to_plane),
                          [](const auto& method) {
                            return method.param == IcpMethod::point_to_point ? "PointToPoint"
-                                                                          : "PointToPlane";
+                                                                            : "PointToPlane";
                          });
 
 struct Problem {
@@ -72,8 +72,9 @@ TEST_P(HardInput, FewPointsReturnTheGuess) {
     std::vector<std::uint32_t> first;
     for (std::uint32_t i = 0; i < count; ++i) first.push_back(i);
     for (const bool small_source : {true, false}) {
-      const IcpResult result = icp(small_source ? subset(p.source, first) : p.source,
-                                   small_source ? p.target : subset(p.target, first), p.guess, options());
+      const IcpResult result =
+          icp(small_source ? subset(p.source, first) : p.source,
+              small_source ? p.target : subset(p.target, first), p.guess, options());
       EXPECT_EQ(result.stop, Stop::too_few_points);
       EXPECT_EQ(result.target_from_source.matrix(), p.guess.matrix());
       EXPECT_EQ(result.pairs, 0u);
@@ -156,7 +157,8 @@ TEST_P(HardInput, AGuessThatIsNoRotationIsProjected) {
   const Problem p = bumpy_problem();
   for (const double shear : {0.0001, 0.05}) {
     Pose sheared = p.guess;
-    sheared.linear() *= Eigen::Matrix3d::Identity() + shear * Eigen::Vector3d(1, 0, 0) * Eigen::RowVector3d(0.3, 1, 0);
+    sheared.linear() *= Eigen::Matrix3d::Identity() +
+                        shear * Eigen::Vector3d(1, 0, 0) * Eigen::RowVector3d(0.3, 1, 0);
     const Pose proper = make_pose(nearest_rotation(sheared.linear()), sheared.translation());
     const IcpResult result = icp(p.source, p.target, sheared, options());
     EXPECT_EQ(result.target_from_source.matrix(),
