@@ -36,6 +36,14 @@ void require_within(const std::string& field, double value, double lowest, doubl
     refuse(Trouble::input, field, ": ", value, ", must be from ", lowest, " to ", highest);
 }
 
+void require_sensor(const std::string& device, const Sensor& sensor, int most_bits) {
+  require_positive(device + "/sensor.gain_e_per_dn", sensor.gain_e_per_dn);
+  require_finite(device + "/sensor.offset_dn", sensor.offset_dn);
+  require_within(device + "/sensor.read_noise_e", sensor.read_noise_e, 0, 1e9);
+  require_positive(device + "/sensor.full_well_e", sensor.full_well_e);
+  require_within(device + "/sensor.bits", sensor.bits, 1, most_bits);
+}
+
 void require_size(const std::string& field, double numbers) {
   if (!(numbers <= most_numbers))
     refuse(Trouble::resource, field, ": ", numbers, " numbers, must be at most ", most_numbers);

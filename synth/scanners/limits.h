@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "libscan/core/raw_frames.h"
+
 namespace scan::synth {
 
 // Each throws scan::Error "<field>: <value>, must be <limit>"; `field` names the scanner as well,
@@ -12,6 +14,9 @@ namespace scan::synth {
 void require_positive(const std::string& field, double value);
 void require_finite(const std::string& field, double value);
 void require_within(const std::string& field, double value, double lowest, double highest);
+
+// The fields of a sensor with at most `most_bits` bits; `device` is the scanner's name.
+void require_sensor(const std::string& device, const Sensor& sensor, int most_bits);
 
 // Refuses (Trouble::resource) frames of more than 2^31 numbers.
 void require_size(const std::string& field, double numbers);
