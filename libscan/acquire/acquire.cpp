@@ -13,8 +13,7 @@ struct Decoder {
     std::vector<Eigen::Vector3d> camera_origins;
     camera_origins.reserve(scan.ray.size());
     for (const std::uint32_t ray : scan.ray)
-      camera_origins.push_back(
-          frames.scanner_from_camera[ray / scan.grid.columns].translation());
+      camera_origins.push_back(frames.scanner_from_camera[ray / scan.grid.columns].translation());
     estimate_normals(scan, options.normals, camera_origins);
     return scan;
   }

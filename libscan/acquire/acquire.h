@@ -21,8 +21,8 @@ struct AcquireOptions {
   NormalOptions normals;
 };
 
-// Decodes by the kind of the frames, then estimates normals. Every ray ends as a point with sigma or
-// under one reason in `misses`: points + misses = rays.
+// Decodes by the kind of the frames, then estimates normals. Every ray ends as a point with sigma
+// or under one reason in `misses`: points + misses = rays.
 Scan acquire(const RawFrames& frames, const AcquireOptions& options = {});
 
 }  // namespace scan

@@ -27,11 +27,17 @@ bool sample(const Image<std::uint8_t>& image, double x, int row, Sample& result)
   if (!(x >= 1 && x < image.width - 2)) return false;
   const int i = static_cast<int>(x);
   const double t = x - i;
-  const double a = image(i - 1, row), b = image(i, row), c = image(i + 1, row), d = image(i + 2, row);
+  const double a = image(i - 1, row), b = image(i, row), c = image(i + 1, row),
+               d = image(i + 2, row);
   const double p1 = c - a, p2 = 2 * a - 5 * b + 4 * c - d, p3 = 3 * (b - c) + d - a;
   result.value = b + 0.5 * t * (p1 + t * (p2 + t * p3));
   result.slope = 0.5 * (p1 + t * (2 * p2 + t * 3 * p3));
   return true;
+}
+
+double slope_of(const Image<std::uint8_t>& image, int column, int row) {
+  const int before = std::max(0, column - 1), after = std::min(image.width - 1, column + 1);
+  return 0.5 * (image(after, row) - image(before, row));
 }
 
 // One pixel of the window: where it is, and its share of the disparity's slope.
@@ -46,7 +52,8 @@ Eigen::Vector2d slope_at(const Image<float>& disparity, int column, int row, int
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
   const double centre = disparity(column, row);
   for (int y = std::max(0, row - reach); y <= std::min(disparity.height - 1, row + reach); ++y)
-    for (int x = std::max(0, column - reach); x <= std::min(disparity.width - 1, column + reach); ++x) {
+    for (int x = std::max(0, column - reach); x <= std::min(disparity.width - 1, column + reach);
+         ++x) {
       const double step = disparity(x, y) - centre;
       const double distance = std::hypot(x - column, y - row);
       if (!(std::abs(step) <= same_surface_px * std::max(1.0, 0.5 * distance))) continue;
@@ -61,7 +68,8 @@ std::vector<WindowPixel> window_at(const Image<float>& disparity, int column, in
   const Eigen::Vector2d slope = slope_at(disparity, column, row, 2 * half);
   std::vector<WindowPixel> window;
   for (int y = std::max(0, row - half); y <= std::min(disparity.height - 1, row + half); ++y)
-    for (int x = std::max(0, column - half); x <= std::min(disparity.width - 1, column + half); ++x) {
+    for (int x = std::max(0, column - half); x <= std::min(disparity.width - 1, column + half);
+         ++x) {
       const double offset = slope.dot(Eigen::Vector2d(x - column, y - row));
       const double step = disparity(x, y) - disparity(column, row);
       if (std::abs(step - offset) <= same_surface_px) window.push_back({x, y, offset});
@@ -72,58 +80,95 @@ std::vector<WindowPixel> window_at(const Image<float>& disparity, int column, in
 // Sums over the window at disparity d, brightness difference eliminated.
 struct Fit {
   int count = 0;
-  double residual = 0;  // sum of squares
-  double texture = 0;   // sum of squared slopes
-  double gradient = 0;  // sum of residual times slope
+  double residual = 0;     // sum of squares
+  double slopes2 = 0;      // sum of squared slopes of the right image
+  double texture = 0;      // sum of left slope times right slope: free of the noise in the slopes
+  double gradient = 0;     // sum of residual times slope
+  double correlation = 0;  // of the two windows, -1 to 1
 };
 
 Fit fit_at(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
            const std::vector<WindowPixel>& window, double d) {
   Fit fit;
-  double e = 0, e2 = 0, g = 0, g2 = 0, eg = 0;
+  double e = 0, e2 = 0, g = 0, g2 = 0, eg = 0, h = 0, gh = 0;
+  double l = 0, l2 = 0, r = 0, r2 = 0;
   for (const WindowPixel& pixel : window) {
     Sample seen;
     if (!sample(right, pixel.column - d - pixel.offset_px, pixel.row, seen)) continue;
-    const double error = left(pixel.column, pixel.row) - seen.value;
+    const double grey = left(pixel.column, pixel.row);
+    const double error = grey - seen.value;
+    l += grey;
+    l2 += grey * grey;
+    r += seen.value;
+    r2 += seen.value * seen.value;
+    const double left_slope = slope_of(left, pixel.column, pixel.row);
     ++fit.count;
     e += error;
     e2 += error * error;
     g += seen.slope;
     g2 += seen.slope * seen.slope;
     eg += error * seen.slope;
+    h += left_slope;
+    gh += left_slope * seen.slope;
   }
   if (fit.count == 0) return fit;
   fit.residual = std::max(0.0, e2 - e * e / fit.count);
-  fit.texture = std::max(0.0, g2 - g * g / fit.count);
+  fit.slopes2 = std::max(0.0, g2 - g * g / fit.count);
+  fit.texture = std::max(0.0, gh - g * h / fit.count);
   fit.gradient = eg - e * g / fit.count;
+  const double left2 = l2 - l * l / fit.count, right2 = r2 - r * r / fit.count;
+  if (left2 > 0 && right2 > 0)
+    fit.correlation = (left2 + right2 - fit.residual) / (2 * std::sqrt(left2 * right2));
   return fit;
 }
 
 struct Refined {
   double disparity_px;
   double sigma_px;
+  double correlation;
 };
 
-Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
-                     const std::vector<WindowPixel>& window, double start, double match_sigma_px) {
+// Of the disparity that minimises the residual. Noise in the slopes adds to slopes2 but not to the
+// texture T: with the variance s^2 of the residuals the estimate has the variance s^2 slopes2 /
+// T^2.
+double information(const Fit& fit) {
   constexpr double rounding_variance = 1.0 / 6;  // two images, 1/12 each
-  Refined best{start, match_sigma_px};
-  Fit fit = fit_at(left, right, window, start);
-  if (fit.count < 6) return best;
-  for (int iteration = 0; iteration < 8 && fit.texture > 0; ++iteration) {
-    // d residual / d disparity = 2 * gradient, so the step is - gradient / texture.
-    const double trial = best.disparity_px - fit.gradient / fit.texture;
+  const double noise2 = std::max(fit.residual / (fit.count - 2), rounding_variance);
+  return fit.slopes2 > 0 ? fit.texture * fit.texture / (fit.slopes2 * noise2) : 0;
+}
+
+// Newton steps on residual * information / slopes2 + (d - start)^2 * prior; returns d, `fit` is the
+// one there.
+double descend(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+               const std::vector<WindowPixel>& window, double start, double d, double prior,
+               Fit& fit) {
+  const double weight = fit.slopes2 > 0 ? information(fit) / fit.slopes2 : 0;
+  const auto cost = [&](const Fit& at, double x) {
+    return at.residual * weight + prior * (x - start) * (x - start);
+  };
+  for (int iteration = 0; iteration < 8; ++iteration) {
+    const double trial =
+        d - (fit.gradient * weight + prior * (d - start)) / (fit.slopes2 * weight + prior);
     if (!(std::abs(trial - start) <= farthest_move_px)) break;
     const Fit next = fit_at(left, right, window, trial);
-    if (next.count < fit.count || !(next.residual < fit.residual)) break;
-    const double move = std::abs(trial - best.disparity_px);
-    best.disparity_px = trial;
+    if (next.count < fit.count || !(cost(next, trial) < cost(fit, d))) break;
+    const double move = std::abs(trial - d);
+    d = trial;
     fit = next;
     if (move < 1e-4) break;
   }
-  const double noise2 = std::max(fit.residual / (fit.count - 2), rounding_variance);
-  best.sigma_px = 1 / std::sqrt(fit.texture / noise2 + 1 / (match_sigma_px * match_sigma_px));
-  return best;
+  return d;
+}
+
+Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+                     const std::vector<WindowPixel>& window, double start, double match_sigma_px) {
+  const double prior = 1 / (match_sigma_px * match_sigma_px);
+  Fit fit = fit_at(left, right, window, start);
+  if (fit.count < 6) return {start, match_sigma_px, fit.correlation};
+  // Twice: the first residual holds the error of the start besides the noise.
+  double d = descend(left, right, window, start, start, prior, fit);
+  d = descend(left, right, window, start, d, prior, fit);
+  return {d, 1 / std::sqrt(information(fit) + prior), fit.correlation};
 }
 
 }  // namespace
@@ -131,16 +176,18 @@ Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>&
 RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                         const Image<float>& disparity_px, int block_px, double match_sigma_px) {
   const float unknown = std::numeric_limits<float>::quiet_NaN();
-  RefinedDisparity result{disparity_px, Image<float>(left.width, left.height, unknown)};
-  const int half = std::max(2, block_px / 2);
+  RefinedDisparity result{disparity_px, Image<float>(left.width, left.height, unknown),
+                          Image<float>(left.width, left.height, unknown)};
+  const int half = block_px / 2 + 1;
   parallel_for(disparity_px.pixels.size(), [&](std::size_t i) {
     const double start = disparity_px.pixels[i];
     if (std::isnan(start)) return;
     const int column = static_cast<int>(i % left.width), row = static_cast<int>(i / left.width);
-    const Refined refined = refine_pixel(
-        left, right, window_at(disparity_px, column, row, half), start, match_sigma_px);
+    const Refined refined = refine_pixel(left, right, window_at(disparity_px, column, row, half),
+                                         start, match_sigma_px);
     result.disparity_px.pixels[i] = static_cast<float>(refined.disparity_px);
     result.sigma_px.pixels[i] = static_cast<float>(refined.sigma_px);
+    result.correlation.pixels[i] = static_cast<float>(refined.correlation);
   });
   return result;
 }

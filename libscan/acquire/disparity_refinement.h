@@ -12,16 +12,19 @@ namespace scan::decoding {
 struct RefinedDisparity {
   Image<float> disparity_px;  // NaN where the input is
   Image<float> sigma_px;
+  Image<float> correlation;  // of the two windows at the disparity
 };
 
-// Gauss-Newton on sum (L(x, y) - R(x - d(x, y), y) - c)^2 over a window about each pixel (Lucas and
-// Kanade 1981), c the images' difference in brightness, R between columns by cubic convolution
+// Newton's method on sum (L(x, y) - R(x - d(x, y), y) - c)^2 over a window about each pixel (Lucas
+// and Kanade 1981), c the images' difference in brightness, R between columns by cubic convolution
 // (Keys 1981). Within the window d follows the slope of the disparity map, and only pixels of the
-// same surface count. The result stays within 1 px of the input and is kept only if it lowers the sum.
+// same surface count. The matcher's own disparity counts as a measurement of sigma
+// `match_sigma_px`, which decides where there is no texture. The result stays within 1 px of it and
+// moves only to lower the sum.
 //
-// sigma: residual variance over the texture, s^2 / sum R'^2, s^2 never below the rounding of both
-// images (1/6). The match itself bounds the error to about `match_sigma_px` even without texture:
-// both informations are added.
+// sigma: 1 / sigma^2 = sum R'^2 / s^2 + 1 / match_sigma_px^2 with the variance s^2 of the
+// residuals, never below the rounding of both images (1/6). It holds the images' noise, not a
+// calibration error.
 RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                         const Image<float>& disparity_px, int block_px, double match_sigma_px);
 

@@ -69,8 +69,7 @@ std::optional<Location> fit_gaussian(const Samples& samples, const Gaussian& sta
     const double old_sigma = shape.sigma;
     shape.centre += change(0);
     shape.amplitude += change(1);
-    if (width == Width::free)
-      shape.sigma = std::clamp(shape.sigma + change(2), narrowest, widest);
+    if (width == Width::free) shape.sigma = std::clamp(shape.sigma + change(2), narrowest, widest);
     if (!(shape.centre >= samples.first - 1 && shape.centre <= last + 1)) return std::nullopt;
     const bool settled = shrink == 1 && std::abs(change(0)) < 1e-9 * shape.sigma &&
                          std::abs(shape.sigma - old_sigma) < 1e-7 * shape.sigma;
@@ -84,7 +83,7 @@ std::optional<Location> fit_gaussian(const Samples& samples, const Gaussian& sta
 
 std::optional<Location> centroid(const Samples& samples, const Gaussian& start) {
   Location location{start, 0};
-  const double reach = 3 * start.sigma;
+  const double reach = 3 * start.sigma + 1;  // a sample more: sampling is coarse for narrow peaks
   for (int iteration = 0; iteration < 20; ++iteration) {
     const double low = location.shape.centre - reach, high = location.shape.centre + reach;
     double mass = 0, moment = 0, spread = 0;

@@ -30,14 +30,15 @@ struct Samples {
   double background_variance_e2 = 0;
 };
 
-// Maximum likelihood by Fisher scoring: weights are the inverse variances under the model itself, so
-// that for pure shot noise the fixed point is Poisson's. The centre's sigma is the Cramer-Rao bound,
-// sigma / sqrt(N) for N electrons without other noise. None if the iteration leaves the samples or
-// does not settle. A free width stays within [0.4, 30] samples.
+// Maximum likelihood by Fisher scoring: weights are the inverse variances under the model itself,
+// so that for pure shot noise the fixed point is Poisson's. The centre's sigma is the Cramer-Rao
+// bound, sigma / sqrt(N) for N electrons without other noise. None if the iteration leaves the
+// samples or does not settle. A free width stays within [0.4, 30] samples.
 std::optional<Location> fit_gaussian(const Samples& samples, const Gaussian& start, Width width);
 
-// Centre of mass over start.centre +- 3 start.sigma, the window moved until it is centred on its own
-// result (its end samples count by their covered share). None if the signal in it is not positive.
+// Centre of mass over start.centre +- (3 start.sigma + 1), the window moved until it is centred on
+// its own result (its end samples count by their covered share). None if the signal in it is not
+// positive.
 std::optional<Location> centroid(const Samples& samples, const Gaussian& start);
 
 }  // namespace scan::decoding

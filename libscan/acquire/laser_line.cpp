@@ -23,7 +23,8 @@ void check(const StripeImages& frames) {
   decoding::check(calibration.sensor);
   if (!(std::abs(calibration.plane_normal.norm() - 1) <= 1e-6))
     throw Error(Trouble::input, "laser line/plane_normal: length " +
-                                    std::to_string(calibration.plane_normal.norm()) + ", must be 1");
+                                    std::to_string(calibration.plane_normal.norm()) +
+                                    ", must be 1");
   if (!std::isfinite(calibration.plane_offset_m))
     throw Error(Trouble::input, "laser line/plane_offset_m: must be finite");
   if (frames.images.size() != frames.scanner_from_camera.size())
@@ -42,8 +43,8 @@ void check(const StripeImages& frames) {
 
 // Where the viewing ray of a pixel meets the light plane, camera frame, with the derivative by the
 // pixel's column. The ray is r(u) with z = 1; the point P = t r, t = offset / (n . r), so
-// dP/du = t (r' - r (n . r') / (n . r)). The covariance is of rank one along dP/du: the image row is
-// a choice, not a measurement.
+// dP/du = t (r' - r (n . r') / (n . r)). The covariance is of rank one along dP/du: the image row
+// is a choice, not a measurement.
 RayOutcome triangulate(const LaserLineCalibration& calibration, const decoding::StripePeak& peak,
                        int row) {
   constexpr double difference_px = 0.01;  // r' by central differences: error of order 1e-4 / f^3
@@ -58,15 +59,15 @@ RayOutcome triangulate(const LaserLineCalibration& calibration, const decoding::
   const double sine = calibration.plane_normal.dot(*ray);
   const double sine_slope = calibration.plane_normal.dot(slope);
   // The ray might as well be parallel to the plane if three sigmas of the peak reach that far.
-  if (!(std::abs(sine) > 3 * std::abs(sine_slope) * peak.sigma_px)) return missed(reason::undetermined);
+  if (!(std::abs(sine) > 3 * std::abs(sine_slope) * peak.sigma_px))
+    return missed(reason::undetermined);
   const double depth_m = calibration.plane_offset_m / sine;
   if (!std::isfinite(depth_m) || !(depth_m > 0)) return missed(reason::undetermined);
   if (depth_m < calibration.min_range_m || depth_m > calibration.max_range_m)
     return missed(reason::out_of_range);
   RayOutcome outcome;
   outcome.point = depth_m * *ray;
-  const Eigen::Vector3d shift_m =
-      peak.sigma_px * depth_m * (slope - *ray * (sine_slope / sine));
+  const Eigen::Vector3d shift_m = peak.sigma_px * depth_m * (slope - *ray * (sine_slope / sine));
   outcome.covariance = shift_m * shift_m.transpose();
   outcome.sigma_m = std::abs(shift_m.dot(ray->normalized()));
   outcome.intensity = peak.height_e / calibration.sensor.gain_e_per_dn;
@@ -86,8 +87,8 @@ RayOutcome decode_row(const StripeImages& frames, const LaserLineOptions& option
   if (!outcome.miss.empty()) return outcome;
   const Pose& scanner_from_camera = frames.scanner_from_camera[step];
   outcome.point = scanner_from_camera * outcome.point;
-  outcome.covariance = scanner_from_camera.linear() * outcome.covariance *
-                       scanner_from_camera.linear().transpose();
+  outcome.covariance =
+      scanner_from_camera.linear() * outcome.covariance * scanner_from_camera.linear().transpose();
   return outcome;
 }
 

@@ -64,13 +64,14 @@ std::optional<Location> leading_edge(const Samples& samples, const Gaussian& sta
   while (below > 0 && signal_e[below] > start.amplitude / 2) --below;
   if (signal_e[below] > start.amplitude / 2) return std::nullopt;
   if (below + 1 >= count) return std::nullopt;
-  const Points points{{below, below + 1, middle, middle + 1},
-                      {signal_e[below], signal_e[below + 1], signal_e[middle],
-                       signal_e[middle + 1]}};
+  const Points points{
+      {below, below + 1, middle, middle + 1},
+      {signal_e[below], signal_e[below + 1], signal_e[middle], signal_e[middle + 1]}};
   if (!std::all_of(points.value.begin(), points.value.end(), [](double v) { return v > 0; }))
     return std::nullopt;
   const double s = start.sigma;
-  const double place = samples.first + half_height_place(points, s) + s * std::sqrt(2 * std::numbers::ln2);
+  const double place =
+      samples.first + half_height_place(points, s) + s * std::sqrt(2 * std::numbers::ln2);
   const double sigma = place_sigma(points, s, samples.background_variance_e2);
   if (!std::isfinite(place) || !std::isfinite(sigma)) return std::nullopt;
   return Location{{place, s, start.amplitude}, sigma};

@@ -28,9 +28,10 @@ class GridNeighbours {
         point_of_ray_[scan.ray[i]] = static_cast<std::uint32_t>(i);
   }
 
-  // Points of the (2 reach + 1)^2 window about a point, those beyond a jump left out: a point counts
-  // as beyond when its distance per grid step is over five times the window's lower quartile. On a
-  // plane that is the ratio of the steps' lengths along and across the tilt at 78 degrees.
+  // Points of the (2 reach + 1)^2 window about a point, those beyond a jump left out: a point
+  // counts as beyond when its distance per grid step is over five times the window's lower
+  // quartile. On a plane that is the ratio of the steps' lengths along and across the tilt at 78
+  // degrees.
   void around(std::uint32_t centre, int reach, std::vector<std::uint32_t>& found) const {
     struct Near {
       std::uint32_t point;
@@ -39,7 +40,8 @@ class GridNeighbours {
     std::vector<Near> window;
     const int row = static_cast<int>(scan_.ray[centre] / scan_.grid.columns);
     const int column = static_cast<int>(scan_.ray[centre] % scan_.grid.columns);
-    for (int r = std::max(0, row - reach); r <= std::min<int>(scan_.grid.rows - 1, row + reach); ++r)
+    for (int r = std::max(0, row - reach); r <= std::min<int>(scan_.grid.rows - 1, row + reach);
+         ++r)
       for (int c = std::max(0, column - reach);
            c <= std::min<int>(scan_.grid.columns - 1, column + reach); ++c) {
         const std::uint32_t point = point_of_ray_[std::size_t(r) * scan_.grid.columns + c];
@@ -85,8 +87,8 @@ Eigen::Vector3d plane_normal(const PointCloud& cloud, std::span<const std::uint3
                                                               mean * mean.transpose());
   const Eigen::Vector3d spread = solver.eigenvalues();  // ascending
   const double rounding = std::numeric_limits<double>::epsilon() * origin.cwiseAbs().maxCoeff();
-  const double least = 16 * std::max(rounding * rounding,
-                                     std::numeric_limits<double>::epsilon() * spread(2));
+  const double least =
+      16 * std::max(rounding * rounding, std::numeric_limits<double>::epsilon() * spread(2));
   if (!(spread(1) > least) || !(3 * spread(0) < spread(1))) return Eigen::Vector3d::Zero();
   return solver.eigenvectors().col(0).normalized();
 }
@@ -95,8 +97,8 @@ void check(const Scan& scan, const NormalOptions& options,
            std::span<const Eigen::Vector3d> viewpoints) {
   scan::check(scan.cloud);
   if (options.neighbours < 3)
-    throw Error(Trouble::usage,
-                "normals/neighbours: " + std::to_string(options.neighbours) + ", must be 3 or more");
+    throw Error(Trouble::usage, "normals/neighbours: " + std::to_string(options.neighbours) +
+                                    ", must be 3 or more");
   if (!viewpoints.empty() && viewpoints.size() != scan.cloud.size())
     throw Error(Trouble::usage, "normals: " + std::to_string(viewpoints.size()) +
                                     " viewpoints for " + std::to_string(scan.cloud.size()) +
@@ -110,8 +112,8 @@ bool has_grid(const Scan& scan) {
                      [&](std::uint32_t ray) { return ray < cells; });
 }
 
-// normal(i, neighbours, widening) for each finite point: up to two times, a neighbourhood that fixes
-// no plane is doubled in reach.
+// normal(i, neighbours, widening) for each finite point: up to two times, a neighbourhood that
+// fixes no plane is doubled in reach.
 template <class Around>
 void fit_planes(Scan& scan, std::span<const Eigen::Vector3d> viewpoints, Around&& around) {
   PointCloud& cloud = scan.cloud;
@@ -146,16 +148,16 @@ void estimate_normals(Scan& scan, const NormalOptions& options,
     return;
   }
   const KdTree tree(scan.cloud.points);
-  fit_planes(scan, viewpoints,
-             [&](std::uint32_t i, int widening, std::vector<std::uint32_t>& found) {
-               std::vector<Neighbour> near;
-               tree.k_nearest(scan.cloud.points[i],
-                              static_cast<std::size_t>(options.neighbours) * widening * widening + 1,
-                              near);
-               found.assign(1, i);
-               for (const Neighbour& one : near)
-                 if (one.index != i) found.push_back(one.index);
-             });
+  fit_planes(
+      scan, viewpoints, [&](std::uint32_t i, int widening, std::vector<std::uint32_t>& found) {
+        std::vector<Neighbour> near;
+        tree.k_nearest(scan.cloud.points[i],
+                       static_cast<std::size_t>(options.neighbours) * widening * widening + 1,
+                       near);
+        found.assign(1, i);
+        for (const Neighbour& one : near)
+          if (one.index != i) found.push_back(one.index);
+      });
 }
 
 }  // namespace scan

@@ -11,9 +11,10 @@ struct NormalOptions {
   int neighbours = 16;
 };
 
-// Fills scan.cloud.normals by plane fits over the nearest points (weighted by sigma where known) and
-// turns each towards the scanner's origin. A neighbourhood that fixes no plane gives (0, 0, 0). For a
-// laser-line scan, whose viewpoint moves, `viewpoints` has one origin per point; empty: the origin.
+// Fills scan.cloud.normals by plane fits over the nearest points (weighted by sigma where known)
+// and turns each towards the scanner's origin. A neighbourhood that fixes no plane gives (0, 0, 0).
+// For a laser-line scan, whose viewpoint moves, `viewpoints` has one origin per point; empty: the
+// origin.
 void estimate_normals(Scan& scan, const NormalOptions& options = {},
                       std::span<const Eigen::Vector3d> viewpoints = {});
 

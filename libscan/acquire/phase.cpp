@@ -53,15 +53,15 @@ void check(const PhaseTaps& frames) {
 
 // How far the search for wraps goes: no further than where all the frequencies' phases repeat.
 double search_range_m(const PhaseCalibration& calibration) {
-  const double range_m = std::min(calibration.max_range_m,
-                                  decoding::combined_period_m(calibration.frequencies_hz));
+  const double range_m =
+      std::min(calibration.max_range_m, decoding::combined_period_m(calibration.frequencies_hz));
   const double highest =
       *std::max_element(calibration.frequencies_hz.begin(), calibration.frequencies_hz.end());
   const double wraps = range_m * 2 * highest / speed_of_light_m_s;
   if (wraps > most_wraps)
-    throw Error(Trouble::input, "phase camera/max_range_m: " + std::to_string(range_m) + " m are " +
-                                    std::to_string(wraps) + " wraps, the limit is " +
-                                    std::to_string(most_wraps),
+    throw Error(Trouble::input,
+                "phase camera/max_range_m: " + std::to_string(range_m) + " m are " +
+                    std::to_string(wraps) + " wraps, the limit is " + std::to_string(most_wraps),
                 "set max_range_m to what the scene needs");
   return range_m;
 }
@@ -74,8 +74,8 @@ struct Demodulated {
 
 // One frequency of one pixel. C_k = B + A cos(phi + k pi/2) gives C0 - C2 = 2 A cos phi and
 // C3 - C1 = 2 A sin phi. With the variance V = B + read noise^2 + rounding of each tap (Poisson)
-// sigma_phi = sqrt(V / 2) / A, so sigma_d = c / (4 pi f) sigma_phi = c / (4 sqrt(2) pi f) sqrt(V) / A
-// (Lange and Seitz 2001), and sigma_A = sqrt(V / 2).
+// sigma_phi = sqrt(V / 2) / A, so sigma_d = c / (4 pi f) sigma_phi = c / (4 sqrt(2) pi f) sqrt(V) /
+// A (Lange and Seitz 2001), and sigma_A = sqrt(V / 2).
 Demodulated demodulate(const std::array<double, 4>& dn, const Sensor& sensor, double frequency_hz,
                        double min_amplitude_sigmas) {
   if (*std::max_element(dn.begin(), dn.end()) >= decoding::saturation_dn(sensor))
@@ -112,8 +112,8 @@ RayOutcome decode_pixel(const PhaseTaps& frames, const PhaseOptions& options, do
   const auto distance = decoding::unwrap(folded, range_m, options.max_inconsistency_sigmas);
   if (!distance.miss.empty()) return missed(distance.miss);
   const auto width = static_cast<std::size_t>(calibration.camera.width_px);
-  const auto ray = ray_through(calibration.camera, {static_cast<double>(pixel % width),
-                                                    static_cast<double>(pixel / width)});
+  const auto ray = ray_through(
+      calibration.camera, {static_cast<double>(pixel % width), static_cast<double>(pixel / width)});
   if (!ray) return missed(reason::undetermined);
   return decoding::point_on_ray(ray->normalized(), distance.distance_m, distance.sigma_m,
                                 amplitude_e / calibration.sensor.gain_e_per_dn);

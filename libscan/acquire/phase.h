@@ -9,7 +9,7 @@
 namespace scan {
 
 struct PhaseOptions {
-  double min_amplitude_sigmas = 5;   // amplitude over its own standard deviation
+  double min_amplitude_sigmas = 5;      // amplitude over its own standard deviation
   double max_inconsistency_sigmas = 4;  // of the frequencies' distances after unwrapping
 };
 

@@ -66,10 +66,10 @@ UnwrappedDistance unwrap(std::span<const FoldedDistance> folded, double range_m,
   const double margin_m = gate_sigmas * joint_m;
   Candidate best, second;
   const double first = std::ceil((-margin_m - reference.distance_m) / reference.period_m) - 1;
-  const double last = std::floor((range_m + margin_m - reference.distance_m) / reference.period_m) + 1;
+  const double last =
+      std::floor((range_m + margin_m - reference.distance_m) / reference.period_m) + 1;
   for (double wraps = first; wraps <= last; ++wraps) {
-    const Candidate one =
-        rate(folded, reference.distance_m + wraps * reference.period_m, joint_m);
+    const Candidate one = rate(folded, reference.distance_m + wraps * reference.period_m, joint_m);
     if (one.distance_m < -margin_m || one.distance_m > range_m + margin_m) continue;
     if (one.chi_square < best.chi_square)
       second = std::exchange(best, one);

@@ -13,7 +13,7 @@ namespace scan::decoding {
 struct FoldedDistance {
   double distance_m = 0;  // in [0, period_m)
   double sigma_m = 0;
-  double period_m = 0;    // c / 2f
+  double period_m = 0;  // c / 2f
 };
 
 struct UnwrappedDistance {

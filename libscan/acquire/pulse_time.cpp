@@ -77,7 +77,7 @@ PulseTime locate_pulse(std::span<const double> waveform_e, double pulse_sigma, c
   const int top = first_top(correlation, background, options.threshold_sigmas);
   if (top < 0) return {.miss = reason::no_signal};
   const int count = static_cast<int>(signal_e.size());
-  const int reach = std::max(2, static_cast<int>(std::ceil(3 * pulse_sigma)));
+  const int reach = static_cast<int>(std::ceil(3 * pulse_sigma)) + 2;
   const int first = std::max(0, top - reach), last = std::min(count - 1, top + reach);
   if (std::any_of(waveform_e.begin() + first, waveform_e.begin() + last + 1,
                   [&](double value) { return value >= full_e; }))
@@ -93,7 +93,8 @@ PulseTime locate_pulse(std::span<const double> waveform_e, double pulse_sigma, c
   const double place = pulse->shape.centre;
   if (place < 2 * pulse_sigma || place > count - 1 - 2 * pulse_sigma)
     return {.miss = reason::border};
-  return {.sample = place, .sigma_samples = pulse->centre_sigma, .height_e = pulse->shape.amplitude};
+  return {
+      .sample = place, .sigma_samples = pulse->centre_sigma, .height_e = pulse->shape.amplitude};
 }
 
 }  // namespace scan::decoding

@@ -13,13 +13,15 @@ namespace scan::decoding {
 // Either `miss` names why there is no point, or it is empty and the rest holds.
 struct RayOutcome {
   std::string_view miss = {};
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();            // scanner frame, m
-  double sigma_m = 0;                                         // along the viewing ray
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();       // m^2
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       // scanner frame, m
+  double sigma_m = 0;                                    // along the viewing ray
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // m^2
   double intensity = 0;
 };
 
-inline RayOutcome missed(std::string_view reason) { return {.miss = reason}; }
+inline RayOutcome missed(std::string_view reason) {
+  return {.miss = reason};
+}
 
 // Points in the order of their rays; one count per reason: points + misses = outcomes.
 Scan collect(std::span<const RayOutcome> outcomes, RayGrid grid);

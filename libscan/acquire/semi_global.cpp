@@ -13,9 +13,9 @@ namespace {
 Image<std::uint8_t> mirrored(const Image<std::uint8_t>& image) {
   Image<std::uint8_t> result = image;
   for (int row = 0; row < image.height; ++row)
-    std::reverse(result.pixels.begin() + static_cast<std::ptrdiff_t>(result.index(0, row)),
-                 result.pixels.begin() + static_cast<std::ptrdiff_t>(result.index(0, row)) +
-                     image.width);
+    std::reverse(
+        result.pixels.begin() + static_cast<std::ptrdiff_t>(result.index(0, row)),
+        result.pixels.begin() + static_cast<std::ptrdiff_t>(result.index(0, row)) + image.width);
   return result;
 }
 
@@ -56,8 +56,7 @@ Image<float> semi_global(const Image<std::uint8_t>& left, const Image<std::uint8
   return disparity;
 }
 
-Image<float> semi_global_of_right(const Image<std::uint8_t>& left,
-                                  const Image<std::uint8_t>& right,
+Image<float> semi_global_of_right(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                                   const SemiGlobalOptions& options) {
   const Image<float> seen = semi_global(mirrored(right), mirrored(left), options);
   Image<float> disparity = seen;

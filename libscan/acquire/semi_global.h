@@ -16,15 +16,14 @@ struct SemiGlobalOptions {
   bool reject = true;  // matches that are not unique, and speckles
 };
 
-// Disparity of each left pixel to 1/16 px, NaN where there is none. Every left pixel is tried against
-// the whole search range; where that leaves the right image its first column is repeated. One
-// thread, so the same bytes always.
+// Disparity of each left pixel to 1/16 px, NaN where there is none. Every left pixel is tried
+// against the whole search range; where that leaves the right image its first column is repeated.
+// One thread, so the same bytes always.
 Image<float> semi_global(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                          const SemiGlobalOptions& options);
 
 // The same for each pixel of the right image: the pair is mirrored, which swaps the roles.
-Image<float> semi_global_of_right(const Image<std::uint8_t>& left,
-                                  const Image<std::uint8_t>& right,
+Image<float> semi_global_of_right(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                                   const SemiGlobalOptions& options);
 
 }  // namespace scan::decoding

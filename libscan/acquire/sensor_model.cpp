@@ -37,7 +37,9 @@ void check(const Sensor& s) {
   require(s.bits >= 1 && s.bits <= 16, "bits", s.bits, "1 to 16");
 }
 
-double electrons(const Sensor& s, double dn) { return (dn - s.offset_dn) * s.gain_e_per_dn; }
+double electrons(const Sensor& s, double dn) {
+  return (dn - s.offset_dn) * s.gain_e_per_dn;
+}
 
 double variance_e2(const Sensor& s, double expected_e) {
   return std::max(expected_e, 0.0) + s.read_noise_e * s.read_noise_e +

@@ -24,8 +24,8 @@ double saturation_dn(const Sensor& sensor);
 // The dark part of a row of readings.
 struct Background {
   double level_e = 0;
-  double variance_e2 = 0;    // of one reading
-  double shot_share = 0;     // of the variance that is Poisson, 0 to 1
+  double variance_e2 = 0;  // of one reading
+  double shot_share = 0;   // of the variance that is Poisson, 0 to 1
 
   // How far the sum of `count` readings must exceed count * level_e so that chance explains it no
   // more often than `sigmas` of a normal variable. For few photons the Poisson tail is longer than

@@ -43,9 +43,9 @@ std::optional<Location> fit_stripe(std::span<const double> signal_e, const Strip
 }
 
 // Zero crossing of the antisymmetric difference filter g(i) = sum_k f(i + k) - f(i - k), k = 1..h
-// (Blais and Rioux, Signal Processing 11, 1986; there h = 1, 2 or 4). Here h follows the stripe, two
-// sigma, which is near the best for shot noise. Between two columns g is taken as straight, that is
-// the stripe's top as a parabola.
+// (Blais and Rioux, Signal Processing 11, 1986; there h = 1, 2 or 4). Here h follows the stripe,
+// two sigma, which is near the best for shot noise. Between two columns g is taken as straight,
+// that is the stripe's top as a parabola.
 std::optional<Location> parabola(std::span<const double> signal_e, const Stripe& stripe,
                                  const Gaussian& shape) {
   const int half = std::max(1, static_cast<int>(std::lround(2 * shape.sigma)));

@@ -3,8 +3,9 @@
 // The stripe's place in an image row to a fraction of a pixel.
 //
 // Bias for a noise-free Gaussian stripe sampled at the pixels' centres, over all sub-pixel places
-// (checked by stripe_peak_test.cpp): gaussian: none but the rounding of the readings; centroid: below
-// 0.001 px for sigma >= 0.6 px; parabola: below 0.025 px at sigma 0.6 px, 0.005 px from 1 px on.
+// (checked by stripe_peak_test.cpp): gaussian: none but the rounding of the readings; centroid:
+// below 0.004 px at sigma 0.6 px, 0.0005 px from 1 px on; parabola: below 0.03 px at sigma 0.6 px,
+// 0.02 px at 1 px, 0.004 px from 2.5 px on.
 #pragma once
 
 #include "libscan/acquire/laser_line.h"

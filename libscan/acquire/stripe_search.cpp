@@ -12,8 +12,8 @@ namespace scan::decoding {
 namespace {
 
 constexpr std::array box_widths_px = {1, 3, 5, 9, 17, 33};
-constexpr double clear_sigmas = 8;     // of a peak over all its noise, shot noise included
-constexpr double rival_share = 0.5;    // of the strongest peak's height that makes another a rival
+constexpr double clear_sigmas = 8;   // of a peak over all its noise, shot noise included
+constexpr double rival_share = 0.5;  // of the strongest peak's height that makes another a rival
 constexpr double fwhm_per_sigma = 2.354820045030949;  // 2 sqrt(2 ln 2)
 
 // Sums of the signal over a box around each pixel; the box is cut at the row's ends.
@@ -82,8 +82,8 @@ Flank walk(const Smoothed& smoothed, const Background& background, double sigmas
       if (!risen) lowest_at = x;
       continue;
     }
-    const double noise2 = variance(smoothed, background, value) +
-                          variance(smoothed, background, lowest);
+    const double noise2 =
+        variance(smoothed, background, value) + variance(smoothed, background, lowest);
     if (!(value - lowest > sigmas * std::sqrt(noise2))) continue;
     if (!risen) flank.valley = lowest_at;
     risen = true;
@@ -111,9 +111,9 @@ Stripe find_stripe(std::span<const double> row_e, const Sensor& sensor, double t
   const Flank right = walk(smoothed, stripe.background, threshold_sigmas, +1);
   const double low = left.half_height < 0 ? 0 : left.half_height;
   const double high = right.half_height < 0 ? row_e.size() - 1.0 : right.half_height;
-  const bool clipped = std::any_of(
-      row_e.begin() + static_cast<int>(low), row_e.begin() + static_cast<int>(high) + 1,
-      [&](double value) { return value >= full_e; });
+  const bool clipped =
+      std::any_of(row_e.begin() + static_cast<int>(low), row_e.begin() + static_cast<int>(high) + 1,
+                  [&](double value) { return value >= full_e; });
   if (clipped)
     stripe.miss = reason::saturated;
   else if (left.rival || right.rival)

@@ -20,8 +20,8 @@ using decoding::RayOutcome;
 
 void check_positive(const char* field, double value) {
   if (value > 0 && std::isfinite(value)) return;
-  throw Error(Trouble::input,
-              std::string("waveform/") + field + ": " + std::to_string(value) + ", must be positive");
+  throw Error(Trouble::input, std::string("waveform/") + field + ": " + std::to_string(value) +
+                                  ", must be positive");
 }
 
 void check(const Waveforms& frames) {
@@ -44,15 +44,16 @@ void check(const Waveforms& frames) {
   for (std::size_t ray = 0; ray < rays; ++ray)
     if (!(std::abs(frames.directions[ray].norm() - 1) <= 1e-6))
       throw Error(Trouble::input, "waveform/direction " + std::to_string(ray) + ": length " +
-                                      std::to_string(frames.directions[ray].norm()) + ", must be 1");
+                                      std::to_string(frames.directions[ray].norm()) +
+                                      ", must be 1");
 }
 
 RayOutcome decode_ray(const Waveforms& frames, const WaveformOptions& options, std::size_t ray) {
   const WaveformCalibration& calibration = frames.calibration;
   std::vector<double> waveform_e(frames.samples_per_ray);
   for (std::size_t i = 0; i < waveform_e.size(); ++i)
-    waveform_e[i] = decoding::electrons(calibration.sensor,
-                                        frames.samples[ray * frames.samples_per_ray + i]);
+    waveform_e[i] =
+        decoding::electrons(calibration.sensor, frames.samples[ray * frames.samples_per_ray + i]);
   const decoding::PulseTime pulse =
       decoding::locate_pulse(waveform_e, calibration.pulse_sigma_s / calibration.sample_interval_s,
                              calibration.sensor, options);

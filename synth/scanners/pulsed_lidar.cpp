@@ -29,6 +29,13 @@ double window_start_s(const PulsedLidar& s) {
   return 2 * s.min_range_m / speed_of_light_m_s - window_margin_sigmas * s.pulse_sigma_s;
 }
 
+// Of the pulse as recorded: the variance of the sampling interval, h^2 / 12, adds to the pulse's
+// own.
+double recorded_sigma_s(const PulsedLidar& s) {
+  return std::sqrt(s.pulse_sigma_s * s.pulse_sigma_s +
+                   s.sample_interval_s * s.sample_interval_s / 12);
+}
+
 // Enough that the last sample lies at or behind the window's end. May exceed what an integer holds.
 double samples_in_window(const PulsedLidar& s) {
   const double length_s = 2 * (s.max_range_m - s.min_range_m) / speed_of_light_m_s +
@@ -99,16 +106,16 @@ void add_echo(const PulsedLidar& s, const Echo& echo, std::vector<double>& sampl
   const double dt = s.sample_interval_s;
   const double reach = pulse_reach_sigmas * s.pulse_sigma_s / dt + 0.5;
   const double middle = (echo.time_s - window_start_s(s)) / dt;  // in samples
-  const auto last_index = static_cast<double>(samples.size() - 1);
-  const double first = std::max(0.0, std::ceil(middle - reach));
-  const double last = std::min(last_index, std::floor(middle + reach));
+  const auto end = static_cast<double>(samples.size());
+  const double first = std::clamp(std::ceil(middle - reach), 0.0, end);
+  const double behind = std::clamp(std::floor(middle + reach) + 1, first, end);
   const auto share_before = [&](double edge) {  // of the pulse, before an edge between samples
     return 0.5 * (1 + std::erf((edge - middle) * dt / (std::numbers::sqrt2 * s.pulse_sigma_s)));
   };
   double before = share_before(first - 0.5);
-  for (double i = first; i <= last; ++i) {
-    const double after = share_before(i + 0.5);
-    samples[static_cast<std::size_t>(i)] += echo.electrons * (after - before);
+  for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(behind); ++i) {
+    const double after = share_before(static_cast<double>(i) + 0.5);
+    samples[i] += echo.electrons * (after - before);
     before = after;
   }
 }
@@ -189,7 +196,7 @@ RawFrames render(const PulsedLidar& s, const RayCaster& caster, const Pose& worl
   check(s);
   Waveforms frames{.calibration = {.sample_interval_s = s.sample_interval_s,
                                    .window_start_s = window_start_s(s),
-                                   .pulse_sigma_s = s.pulse_sigma_s,
+                                   .pulse_sigma_s = recorded_sigma_s(s),
                                    .sensor = delivered_sensor(s.sensor, effects)},
                    .grid = grid_of(s),
                    .directions = ray_directions(s),

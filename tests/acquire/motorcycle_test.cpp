@@ -93,17 +93,26 @@ Score score(const DisparityMap& map, const Image<float>& truth) {
           errors[errors.size() / 2], static_cast<double>(covered) / (matched - bad)};
 }
 
-// The limits are the project's aim for this scene, published with it: density 85 %, bad 15 %.
+// The limits are the aim for this scene: at least 85 % of the pixels with truth, at most 15 % of
+// them off by more than 2 px. (Measured 88 % and 5 %.)
 TEST(Motorcycle, IsMatchedDenselyAndRightly) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data in " << folder;
   const Motorcycle scene = load();
-  const Score result = score(match(scene.pair), scene.truth);
+  const DisparityMap map = match(scene.pair);
+  const Score result = score(map, scene.truth);
   RecordProperty("density", std::to_string(result.density));
   RecordProperty("bad2", std::to_string(result.bad2));
   RecordProperty("median_error_px", std::to_string(result.median_error_px));
-  printf("density %.4f bad2 %.4f median %.4f in3s %.4f\n", result.density, result.bad2, result.median_error_px, result.within_3_sigma);
+  RecordProperty("within_3_sigma", std::to_string(result.within_3_sigma));
   EXPECT_GE(result.density, 0.85);
   EXPECT_LE(result.bad2, 0.15);
+  // The matcher alone has 0.160; the truth itself is good to about 0.05 px at this size.
+  EXPECT_LE(result.median_error_px, 0.13);
+
+  const Scan scan = points_from(map, scene.pair.calibration);
+  std::size_t rays = scan.cloud.size();
+  for (const auto& [reason, count] : scan.misses) rays += count;
+  EXPECT_EQ(rays, 741u * 500u);
 }
 
 }  // namespace

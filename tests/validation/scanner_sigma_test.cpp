@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// With noise: each point's own sigma must say how far it is from the truth.
+#include "tests/validation/scanner_range.h"
+
+namespace scan::synth {
+namespace {
+
+// Mean square of error over sigma along the viewing ray, from points inside the surface.
+struct Normalised {
+  double mean_square = 0;
+  double mean = 0;
+  double count = 0;
+};
+
+Normalised normalised_errors(
+    const Scan& scan, const std::vector<RayTruth>& truth,
+    const std::function<Eigen::Vector3d(std::size_t)>& viewpoint = [](std::size_t) {
+      return Eigen::Vector3d(0, 0, 0);
+    }) {
+  Normalised result;
+  for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
+    const RayTruth& ray = truth[scan.ray[i]];
+    if (ray.object < 0) continue;
+    const Eigen::Vector3d direction = (ray.point_in_scanner - viewpoint(scan.ray[i])).normalized();
+    const double error =
+        direction.dot(scan.cloud.points[i] - ray.point_in_scanner) / scan.cloud.sigma_m[i];
+    result.mean += error;
+    result.mean_square += error * error;
+    ++result.count;
+  }
+  result.mean /= result.count;
+  result.mean_square /= result.count;
+  return result;
+}
+
+Material grey() {
+  return {.name = "grey", .albedo = 0.5, .texture = {}};
+}
+
+template <class Device>
+Scan noisy_scan(const Device& device, const Scene& scene) {
+  return acquire(render(device, RayCaster(scene), Pose::Identity(), {.seed = 17, .scan = 1}, {}));
+}
+
+// Independent normal errors of the stated sigma: the mean square is chi-square over n, 1 +- 5
+// sqrt(2 / n); the mean is 0 +- 5 / sqrt(n). Sigma itself is estimated from the noisy taps:
+// relative errors of 1 / sqrt(4 B) each, whose square, 1e-4, adds.
+TEST(PhaseCameraSigma, IsThatOfTheErrors) {
+  PhaseCamera s;
+  s.camera = {
+      .width_px = 120, .height_px = 90, .fx_px = 150, .fy_px = 150, .cx_px = 59.5, .cy_px = 44.5};
+  s.frequencies_hz = {16e6, 80e6, 120e6};
+  s.ambient_electrons = 2000;
+  s.sensor = {.gain_e_per_dn = 2, .offset_dn = 50, .read_noise_e = 15, .bits = 16};
+  const Scene scene = plane_target(1.5, grey()).scene;
+  const Normalised errors =
+      normalised_errors(noisy_scan(s, scene), true_rays(s, RayCaster(scene), Pose::Identity()));
+  EXPECT_GT(errors.count, 10700);
+  EXPECT_NEAR(errors.mean_square, 1, 5 * std::sqrt(2 / errors.count) + 1e-3);
+  EXPECT_NEAR(errors.mean, 0, 5 / std::sqrt(errors.count));
+}
+
+// As above. The decoder's sigma follows the fitted height, a few per cent off for 1e3 electrons; it
+// enters squared, and an underestimate weighs more: 3 (1 / sqrt(N))^2 = 3e-3.
+TEST(PulsedLidarSigma, IsThatOfTheErrors) {
+  PulsedLidar s;
+  s.pattern = RasterPattern{.rows = 60, .columns = 80, .height_rad = 0.5, .width_rad = 0.7};
+  s.sensor = {.gain_e_per_dn = 1, .offset_dn = 50, .read_noise_e = 5, .bits = 16};
+  s.max_range_m = 30;
+  const Scene scene = plane_target(12, grey()).scene;
+  const Normalised errors =
+      normalised_errors(noisy_scan(s, scene), true_rays(s, RayCaster(scene), Pose::Identity()));
+  EXPECT_GT(errors.count, 4750);
+  EXPECT_NEAR(errors.mean_square, 1, 5 * std::sqrt(2 / errors.count) + 3e-3);
+  EXPECT_NEAR(errors.mean, 0, 5 / std::sqrt(errors.count));
+}
+
+// As above; the stripe's width is fitted as well. Its skew shifts the centre by 0.005 px
+// (laser_line_range_test.cpp) where the noise is 1 / sqrt(5000) px and more: 0.3 sigma, 0.1
+// squared.
+TEST(LaserLineSigma, IsThatOfTheErrors) {
+  LaserLine s;
+  s.camera = {
+      .width_px = 160, .height_px = 60, .fx_px = 400, .fy_px = 400, .cx_px = 79.5, .cy_px = 29.5};
+  s.beam_radius_m = 8e-4;
+  s.steps = 31;
+  s.step_m = 2e-3;
+  s.sensor = {.gain_e_per_dn = 2, .offset_dn = 50, .read_noise_e = 10, .bits = 14};
+  const Scene scene = plane_target(0.18, grey()).scene;
+  const RawFrames raw = render(s, RayCaster(scene), Pose::Identity(), {.seed = 17, .scan = 1}, {});
+  const auto& poses = std::get<StripeImages>(raw).scanner_from_camera;
+  const Normalised errors = normalised_errors(
+      acquire(raw), true_rays(s, RayCaster(scene), Pose::Identity()),
+      [&](std::size_t ray) -> Eigen::Vector3d { return poses[ray / 60].translation(); });
+  EXPECT_GT(errors.count, 1840);
+  EXPECT_NEAR(errors.mean_square, 1, 5 * std::sqrt(2 / errors.count) + 0.1);
+  EXPECT_NEAR(errors.mean, 0, 5 / std::sqrt(errors.count) + 0.3);
+}
+
+// As above, but neighbours share their windows of 5 x 5 px: as many independent errors as windows
+// fit.
+TEST(StereoPairSigma, IsThatOfTheErrors) {
+  StereoPair s;
+  s.calibration = {.width_px = 240,
+                   .height_px = 180,
+                   .focal_px = 300,
+                   .cx_px = 119.5,
+                   .cy_px = 89.5,
+                   .doffs_px = 4,
+                   .baseline_m = 0.06,
+                   .disparities_px = 48};
+  s.sensor = {.gain_e_per_dn = 12, .read_noise_e = 20, .bits = 8};
+  const Material noisy{.name = "noise", .albedo = 0.9, .texture = NoiseTexture{0.012, 2, 0.9}};
+  const Scene scene = plane_target(0.6, noisy).scene;
+  const Normalised errors =
+      normalised_errors(noisy_scan(s, scene), true_rays(s, RayCaster(scene), Pose::Identity()));
+  EXPECT_GT(errors.count, 38000);
+  const double windows = errors.count / 25;
+  EXPECT_NEAR(errors.mean_square, 1, 5 * std::sqrt(2 / windows));
+  EXPECT_NEAR(errors.mean, 0, 5 / std::sqrt(windows));
+}
+
+}  // namespace
+}  // namespace scan::synth
