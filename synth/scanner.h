@@ -23,8 +23,8 @@ using Scanner = std::variant<LaserLine, StereoPair, PhaseCamera, PulsedLidar>;
 // Throws scan::Error (input) naming field, value and limit.
 void check(const Scanner& scanner);
 
-// The raw frames of one scan. Chance is addressed by (seed, scan, ray): the same bytes for any number
-// of threads.
+// The raw frames of one scan. Chance is addressed by (seed, scan, ray): the same bytes for any
+// number of threads.
 RawFrames render(const Scanner& scanner, const RayCaster& caster, const Pose& world_from_scanner,
                  const RenderAddress& address, const DetectorEffects& effects);
 

@@ -8,12 +8,13 @@
 #include "libscan/core/units.h"
 #include "synth/scanners/first_surface.h"
 #include "synth/scanners/limits.h"
+#include "synth/scanners/pixel_grid.h"
 
 namespace scan::synth {
 namespace {
 
-std::optional<ScannerRay> pixel_ray(const PhaseCamera& s, double column, double row) {
-  const auto toward = ray_through(s.camera, {column, row});
+std::optional<ScannerRay> pixel_ray(const PhaseCamera& s, const Eigen::Vector2d& place) {
+  const auto toward = ray_through(s.camera, place);
   if (!toward) return std::nullopt;
   return ScannerRay{.direction = toward->normalized()};
 }
@@ -74,9 +75,7 @@ PixelPhasors expected_phasors(const PhaseCamera& s, const RayCaster& caster,
                               const Pose& world_from_scanner, int column, int row) {
   PixelPhasors pixel{.amplitude_e = std::vector<std::complex<double>>(s.frequencies_hz.size())};
   for (int i = 0; i < s.sub_rays * s.sub_rays; ++i) {
-    const double right = (i % s.sub_rays + 0.5) / s.sub_rays - 0.5;
-    const double down = (i / s.sub_rays + 0.5) / s.sub_rays - 0.5;
-    if (const auto ray = pixel_ray(s, column + right, row + down))
+    if (const auto ray = pixel_ray(s, sub_pixel({column, row}, i, s.sub_rays)))
       add_ray(s, caster, world_from_scanner, *ray, pixel);
   }
   pixel.constant_e /= s.sub_rays * s.sub_rays;
@@ -97,8 +96,8 @@ RawFrames render(const PhaseCamera& s, const RayCaster& caster, const Pose& worl
   frames.taps.assign(s.frequencies_hz.size(), {blank, blank, blank, blank});
   const std::size_t pixels = blank.pixels.size();
   parallel_for(pixels, [&](std::size_t i) {
-    const PixelPhasors light = expected_phasors(
-        s, caster, world_from_scanner, static_cast<int>(i % width), static_cast<int>(i / width));
+    const auto [column, row] = place_of(i, width);
+    const PixelPhasors light = expected_phasors(s, caster, world_from_scanner, column, row);
     for (std::size_t f = 0; f < frames.taps.size(); ++f)
       for (int k = 0; k < 4; ++k) {
         const double mean = light.constant_e + modulation(light.amplitude_e[f], k);
@@ -114,8 +113,8 @@ std::vector<RayTruth> true_rays(const PhaseCamera& scanner, const RayCaster& cas
   const int width = scanner.camera.width_px;
   std::vector<RayTruth> rays(static_cast<std::size_t>(width) * scanner.camera.height_px);
   parallel_for(rays.size(), [&](std::size_t i) {
-    const auto ray =
-        pixel_ray(scanner, static_cast<double>(i % width), static_cast<double>(i / width));
+    const auto [column, row] = place_of(i, width);
+    const auto ray = pixel_ray(scanner, Eigen::Vector2d(column, row));
     if (ray) rays[i] = true_ray(caster, world_from_scanner, *ray);
   });
   return rays;

@@ -106,16 +106,16 @@ void add_echo(const PulsedLidar& s, const Echo& echo, std::vector<double>& sampl
   const double dt = s.sample_interval_s;
   const double reach = pulse_reach_sigmas * s.pulse_sigma_s / dt + 0.5;
   const double middle = (echo.time_s - window_start_s(s)) / dt;  // in samples
-  const auto last_index = static_cast<double>(samples.size() - 1);
-  const double first = std::max(0.0, std::ceil(middle - reach));
-  const double last = std::min(last_index, std::floor(middle + reach));
+  const auto end = static_cast<double>(samples.size());
+  const double first = std::clamp(std::ceil(middle - reach), 0.0, end);
+  const double behind = std::clamp(std::floor(middle + reach) + 1, first, end);
   const auto share_before = [&](double edge) {  // of the pulse, before an edge between samples
     return 0.5 * (1 + std::erf((edge - middle) * dt / (std::numbers::sqrt2 * s.pulse_sigma_s)));
   };
   double before = share_before(first - 0.5);
-  for (double i = first; i <= last; ++i) {
-    const double after = share_before(i + 0.5);
-    samples[static_cast<std::size_t>(i)] += echo.electrons * (after - before);
+  for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(behind); ++i) {
+    const double after = share_before(static_cast<double>(i) + 0.5);
+    samples[i] += echo.electrons * (after - before);
     before = after;
   }
 }

@@ -8,6 +8,7 @@
 #include "libscan/core/parallel.h"
 #include "synth/scanners/first_surface.h"
 #include "synth/scanners/limits.h"
+#include "synth/scanners/pixel_grid.h"
 
 namespace scan::synth {
 namespace {
@@ -16,10 +17,11 @@ constexpr double dot_radius = 0.3;       // of the cell's width
 constexpr double dot_probability = 0.5;  // that a cell has a dot
 
 // The ray of a camera through a place in its image (pixels).
-ScannerRay camera_ray(const StereoCalibration& c, StereoSide side, double column, double row) {
+ScannerRay camera_ray(const StereoCalibration& c, StereoSide side, const Eigen::Vector2d& place) {
   const bool left = side == StereoSide::left;
   const double cx = left ? c.cx_px : c.cx_px + c.doffs_px;
-  const Eigen::Vector3d toward((column - cx) / c.focal_px, (row - c.cy_px) / c.focal_px, 1);
+  const Eigen::Vector3d toward((place.x() - cx) / c.focal_px, (place.y() - c.cy_px) / c.focal_px,
+                               1);
   return {.origin = {left ? 0 : c.baseline_m, 0, 0}, .direction = toward.normalized()};
 }
 
@@ -62,7 +64,7 @@ Image<std::uint8_t> render_side(const StereoPair& s, const RayCaster& caster,
   Image<std::uint8_t> image(s.calibration.width_px, s.calibration.height_px);
   const std::uint64_t first = side == StereoSide::left ? 0 : image.pixels.size();
   parallel_for(image.pixels.size(), [&](std::size_t i) {
-    const int column = static_cast<int>(i % image.width), row = static_cast<int>(i / image.width);
+    const auto [column, row] = place_of(i, image.width);
     RandomStream random(address.seed, address.scan, first + i);
     const double mean = expected_electrons(s, caster, world_from_scanner, side, column, row);
     image.pixels[i] = static_cast<std::uint8_t>(read_pixel(s.sensor, effects, mean, random));
@@ -95,9 +97,8 @@ double expected_electrons(const StereoPair& s, const RayCaster& caster,
                           const Pose& world_from_scanner, StereoSide side, int column, int row) {
   double sum = 0;
   for (int i = 0; i < s.sub_rays * s.sub_rays; ++i) {
-    const double right = (i % s.sub_rays + 0.5) / s.sub_rays - 0.5;
-    const double down = (i / s.sub_rays + 0.5) / s.sub_rays - 0.5;
-    const ScannerRay ray = camera_ray(s.calibration, side, column + right, row + down);
+    const Eigen::Vector2d place = sub_pixel({column, row}, i, s.sub_rays);
+    const ScannerRay ray = camera_ray(s.calibration, side, place);
     const auto seen = first_surface(caster, world_from_scanner, ray);
     if (!seen) continue;
     const double albedo = albedo_at(caster.scene(), seen->hit.object, seen->hit.point);
@@ -122,9 +123,9 @@ std::vector<RayTruth> true_rays(const StereoPair& scanner, const RayCaster& cast
   const StereoCalibration& c = scanner.calibration;
   std::vector<RayTruth> rays(static_cast<std::size_t>(c.width_px) * c.height_px);
   parallel_for(rays.size(), [&](std::size_t i) {
-    const auto column = static_cast<double>(i % c.width_px);
-    const auto row = static_cast<double>(i / c.width_px);
-    rays[i] = true_ray(caster, world_from_scanner, camera_ray(c, StereoSide::left, column, row));
+    const auto [column, row] = place_of(i, c.width_px);
+    rays[i] = true_ray(caster, world_from_scanner,
+                       camera_ray(c, StereoSide::left, Eigen::Vector2d(column, row)));
   });
   return rays;
 }

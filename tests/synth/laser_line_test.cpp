@@ -162,6 +162,30 @@ TEST(LaserImages, MissNoLightOutsideTheTracedBand) {
   }
 }
 
+// The sheet's edge grazes the side of a ball that the camera sees: between two rays of the sheet,
+// one on the ball and one past it, the light runs on for many pixels.
+TEST(LaserImages, MissNoLightUpToALimb) {
+  LaserLine s = small_laser();
+  s.camera.fx_px = s.camera.fy_px = 1500;
+  s.beam_radius_m = 4e-4;
+  const Eigen::Vector3d focus(0, 0, focus_z(s));
+  int lit = 0, outside = 0;
+  for (double depth_m = 2e-5; depth_m < 5e-4; depth_m += 4e-5) {
+    const double radius = 0.05;
+    const Eigen::Vector3d centre = focus + (radius - depth_m) * laser_sheet(s).normal;
+    const Bench bench(s, white_scene({sphere_at(centre, radius)}));
+    const Image<std::uint8_t> band = lit_band(bench.view);
+    for (int row = 0; row < 120; row += 7)
+      for (int column = 0; column < 160; ++column) {
+        const bool is_lit = bench.electrons(column, row) > 0.01;
+        lit += is_lit;
+        outside += is_lit && !band(column, row);
+      }
+  }
+  EXPECT_GT(lit, 2000);
+  EXPECT_EQ(outside, 0);
+}
+
 TEST(LaserSweep, MovesAlongItsStageOrAboutItsAxis) {
   LaserLine s = small_laser();
   s.steps = 5;

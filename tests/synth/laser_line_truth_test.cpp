@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -77,12 +78,21 @@ std::optional<Eigen::Vector3d> search_row(const Bench& bench, int row) {
 // From the middle of a ball to the sheet that grazes it, and on a blend: no row is lost, up to the
 // limbs, and of two points in a row the nearer is taken.
 TEST(LaserTruth, LosesNoRowThatASearchFinds) {
-  const LaserLine s = small_laser();
+  LaserLine s = small_laser();
+  s.camera.k1 = -0.3;  // only distortion brings two points of the sheet into one row
+  s.camera.p2 = 0.05;
   const Eigen::Vector3d focus(0, 0, focus_z(s)), across = laser_sheet(s).normal;
   std::vector<Object> bodies = {
       {"bud", exp((Vector6() << 0.5, 0.4, 0.3, 0, 0, 0.2).finished()), bud(), 0}};
   for (const double share : {0.0, 0.3, -0.5, 0.8, 0.95, 0.99})
     bodies.push_back(sphere_at(focus + share * 0.025 * across, 0.025));
+  // a plate that ends at a height: the light steps from it to the plane behind, a row or so back
+  for (const double end_m : {0.0151, 0.0173}) {
+    Object half = plate(0.15, -0.1, 0.1);
+    for (Eigen::Vector3d& vertex : std::get<Mesh>(half.geometry).vertices)
+      vertex.y() = std::min(vertex.y(), end_m);
+    bodies.push_back(half);
+  }
   int found = 0, lost = 0;
   for (const Object& body : bodies) {
     const Bench bench(s, white_scene({body, plane_at(0.25)}));
@@ -97,6 +107,28 @@ TEST(LaserTruth, LosesNoRowThatASearchFinds) {
   }
   EXPECT_GT(found, 500);
   EXPECT_EQ(lost, 0);
+}
+
+// Of a ball of radius r around the focus, z before the camera, the lit points are turned by beta
+// from the laser's middle ray; the camera sees them as long as cos(beta) z cos(theta) > r, where
+// their normal turns away from it.
+TEST(LaserTruth, EndsWhereTheCameraSeesTheBallNoMore) {
+  const LaserLine s = small_laser();
+  const double z = focus_z(s);
+  int checked = 0;
+  for (double radius = 0.02; radius < 0.03; radius += 1e-4) {
+    const Bench bench(s, white_scene({sphere_at({0, 0, z}, radius)}));
+    const auto rays = true_rays(s, bench.caster, Pose::Identity());
+    const double cosine = radius / (z * std::cos(theta)), sine = std::sqrt(1 - cosine * cosine);
+    const double end_px = 300 * radius * sine / (z - radius * cosine * std::cos(theta));
+    const int last = static_cast<int>(std::floor(59.5 + end_px));
+    if (59.5 + end_px - last < 1e-6) continue;  // the very end: either answer is right
+    ++checked;
+    EXPECT_EQ(rays[last].object, 0) << radius;
+    EXPECT_EQ(rays[119 - last].object, 0) << radius;
+    EXPECT_EQ(rays[last + 1].object, -1) << radius;
+  }
+  EXPECT_GT(checked, 80);
 }
 
 // The brightest place of each rendered row is where the truth says.

@@ -276,7 +276,7 @@ TEST(PhaseCamera, NamesTheFieldThatIsWrong) {
   EXPECT_EQ(with([](auto& c) { c.sub_rays = 100; }),
             "phase_camera/sub_rays: 100, must be from 1 to 64");
   EXPECT_EQ(with([](auto& c) { c.sensor.gain_e_per_dn = 0; }),
-            "sensor/gain_e_per_dn is 0.000000, must be positive");
+            "phase_camera/sensor.gain_e_per_dn: 0, must be positive and finite");
   EXPECT_EQ(with([](auto& c) { c.emitter_offset_m = std::nan(""); }),
             "phase_camera/emitter_offset_m: nan, must be finite");
   EXPECT_NE(with([](auto& c) { c.camera.fx_px = 0; }).find("fx_px"), std::string::npos);

@@ -3,51 +3,11 @@
 #include "synth/scanners/pulsed_lidar.h"
 
 #include <cmath>
-#include <numeric>
 
-#include "libscan/core/units.h"
-#include "tests/synth/scanner_scenes.h"
+#include "tests/synth/lidar_waveforms.h"
 
 namespace scan::synth {
 namespace {
-
-constexpr double c = speed_of_light_m_s;
-
-PulsedLidar small_lidar() {
-  PulsedLidar lidar;
-  lidar.pattern = RasterPattern{.rows = 6, .columns = 8, .height_rad = 0.3, .width_rad = 0.4};
-  lidar.max_range_m = 30;
-  return lidar;
-}
-
-std::vector<double> waveform(const PulsedLidar& lidar, const Scene& scene,
-                             const Eigen::Vector3d& direction = Eigen::Vector3d::UnitZ()) {
-  return expected_waveform(lidar, RayCaster(scene), Pose::Identity(), direction);
-}
-
-// Energy, mean time and variance of a waveform without its ambient light.
-struct Moments {
-  double electrons = 0;
-  double time_s = 0;
-  double variance_s2 = 0;
-};
-
-Moments moments_of(const PulsedLidar& lidar, const std::vector<double>& samples) {
-  const double start_s = 2 * lidar.min_range_m / c - 4 * lidar.pulse_sigma_s;
-  const auto time_s = [&](std::size_t i) { return start_s + i * lidar.sample_interval_s; };
-  Moments m;
-  for (const double sample : samples) m.electrons += sample - lidar.ambient_electrons;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    m.time_s += (samples[i] - lidar.ambient_electrons) / m.electrons * time_s(i);
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    m.variance_s2 +=
-        (samples[i] - lidar.ambient_electrons) / m.electrons * std::pow(time_s(i) - m.time_s, 2);
-  return m;
-}
-
-Scene scene_of(Object object, double albedo) {
-  return {.objects = {std::move(object)}, .materials = {plain(albedo)}};
-}
 
 // N = N10 albedo cos (10 / R)^2; the sum over samples of the integrals is the whole pulse but for
 // what lies beyond 9 sigma, and for rounding of 300 ambient samples.
@@ -114,99 +74,6 @@ TEST(PulsedLidar, OpensItsWindowFourSigmasBeyondTheRangeLimits) {
   EXPECT_LT(last_s, 2 * lidar.max_range_m / c + 6e-9 + lidar.sample_interval_s);
   EXPECT_EQ(frames.samples.size(), 48u * frames.samples_per_ray);
   for (const std::uint16_t dn : frames.samples) EXPECT_EQ(dn, 5);  // ambient light, gain 1
-}
-
-// The two moments of the Gaussian with the 1/e^2 radius D(R): none of the first order, D^2 / 4
-// along each axis.
-TEST(PulsedLidar, SpreadsItsRaysAsTheGaussianBeam) {
-  PulsedLidar lidar = small_lidar();
-  lidar.exit_radius_m = 0.0035;
-  lidar.divergence_rad = 0.35e-3;
-  const Eigen::Vector3d axis = Eigen::Vector3d(0.2, -0.3, 1).normalized();
-  for (const int rings : {2, 3, 8}) {
-    lidar.sub_rays = rings;
-    const auto rays = beam_rays(lidar, axis);
-    EXPECT_EQ(rays.size(), static_cast<std::size_t>(rings * rings));
-    for (const double range_m : {0.0, 10.0, 100.0}) {
-      double shares = 0;
-      Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-      Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
-      for (const BeamRay& ray : rays) {
-        EXPECT_NEAR(ray.direction.norm(), 1, 1e-15);
-        const double length_m = (range_m - ray.origin.dot(axis)) / ray.direction.dot(axis);
-        const Eigen::Vector3d off = ray.origin + length_m * ray.direction - range_m * axis;
-        shares += ray.share;
-        mean += ray.share * off;
-        second += ray.share * off * off.transpose();
-      }
-      const double radius_m = std::hypot(0.0035, std::tan(0.35e-3 / 2) * range_m);
-      const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - axis * axis.transpose();
-      EXPECT_NEAR(shares, 1, 1e-14);
-      EXPECT_LT(mean.norm(), 1e-12 * radius_m + 1e-14);
-      EXPECT_LT((second - radius_m * radius_m / 4 * across).norm(), 1e-10 * radius_m * radius_m);
-    }
-  }
-}
-
-// Physics 7.4: diameters 2 D = 7.83, 18.85, 35.69 mm at 10, 50, 100 m for 0.35 mrad and 7 mm exit.
-// The outermost of many rings lies beyond 2 D, the share inside 2 D's radius is 1 - e^-2.
-TEST(PulsedLidar, HasTheTextbookFootprint) {
-  PulsedLidar lidar = small_lidar();
-  lidar.exit_radius_m = 0.0035;
-  lidar.divergence_rad = 0.35e-3;
-  lidar.sub_rays = 40;
-  const auto rays = beam_rays(lidar, Eigen::Vector3d::UnitZ());
-  for (const auto& [range_m, diameter_m] :
-       {std::pair(10.0, 7.83e-3), std::pair(50.0, 18.85e-3), std::pair(100.0, 35.69e-3)}) {
-    double inside = 0;
-    for (const BeamRay& ray : rays) {
-      const Eigen::Vector3d at = ray.origin + range_m / ray.direction.z() * ray.direction;
-      if (at.head<2>().norm() < diameter_m / 2) inside += ray.share;
-    }
-    // A ring has at most (2 * 40 - 1) / 1600 = 5 % of the energy, and one may lie on either side.
-    EXPECT_NEAR(inside, 1 - std::exp(-2), 0.05);
-  }
-}
-
-// Physics 7.4: the 1/e^2 footprint spreads the echo over gamma R tan(theta) = 26 mm at 50 m, 0.3
-// mrad, 60 degrees: four standard deviations of a Gaussian. Terms of higher order are gamma
-// tan(theta) = 5e-4 of it; reading it from the variance of a 0.1 ns pulse costs 1e-9.
-TEST(PulsedLidar, SpreadsTheEchoOfATiltedPlane) {
-  PulsedLidar lidar = small_lidar();
-  lidar.divergence_rad = 0.3e-3;
-  lidar.sub_rays = 6;
-  lidar.ambient_electrons = 0;
-  lidar.pulse_sigma_s = 1e-10;
-  lidar.sample_interval_s = 1e-10;
-  lidar.min_range_m = 49;
-  lidar.max_range_m = 51;
-  const Moments m =
-      moments_of(lidar, waveform(lidar, scene_of(plane_at(50, std::numbers::pi / 3), 1)));
-  const double own_s2 = lidar.pulse_sigma_s * lidar.pulse_sigma_s * (1 + 1.0 / 12);
-  const double spread_m = 4 * c / 2 * std::sqrt(m.variance_s2 - own_s2);
-  EXPECT_NEAR(spread_m, 0.3e-3 * 50 * std::tan(std::numbers::pi / 3), 2e-3 * 26e-3);
-}
-
-// A plate covers half of the footprint: two echoes, each with the energy of half the beam. A line
-// through the axis cuts each ring of 2 k + 1 rays to within half a ray; with the ray on the axis
-// that is (rings / 2 + 1) / rings^2 of the energy at most.
-TEST(PulsedLidar, SeesTwoSurfacesInsideOneFootprint) {
-  PulsedLidar lidar = small_lidar();
-  lidar.divergence_rad = 2e-3;
-  lidar.sub_rays = 12;
-  lidar.ambient_electrons = 0;
-  const Scene scene{.objects = {plane_at(20), plate(10, 0, 5)}, .materials = {plain(0.5)}};
-  std::vector<double> samples = waveform(lidar, scene);
-  const double start_s = 2 * lidar.min_range_m / c - 4 * lidar.pulse_sigma_s;
-  const auto between =
-      static_cast<std::ptrdiff_t>((2 * 15 / c - start_s) / lidar.sample_interval_s);
-  const double first = std::accumulate(samples.begin(), samples.begin() + between, 0.0);
-  const double second = std::accumulate(samples.begin() + between, samples.end(), 0.0);
-  const double bound = (12 / 2.0 + 1) / 144;
-  EXPECT_NEAR(first / (5000 * 0.5), 0.5, bound);
-  EXPECT_NEAR(second / (5000 * 0.5 / 4), 0.5, bound);
-  EXPECT_NEAR(first / 2500 + second / 625, 1, 1e-5);  // cosines and ranges vary by (1e-3)^2
-  EXPECT_EQ(samples[static_cast<std::size_t>(between)], 0);
 }
 
 TEST(PulsedLidar, AimsARasterAboutItsAxis) {

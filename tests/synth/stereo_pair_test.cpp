@@ -4,83 +4,13 @@
 
 #include <cmath>
 
-#include "tests/synth/scanner_scenes.h"
+#include "tests/synth/stereo_images.h"
 
 namespace scan::synth {
 namespace {
 
-constexpr double focal_px = 100;
-constexpr double baseline_m = 0.1;
-
-StereoPair small_pair() {
-  StereoPair pair;
-  pair.calibration = {.width_px = 64,
-                      .height_px = 32,
-                      .focal_px = focal_px,
-                      .cx_px = 31.5,
-                      .cy_px = 15.5,
-                      .baseline_m = baseline_m,
-                      .disparities_px = 32};
-  return pair;
-}
-
-double depth_of(double disparity_px) {
-  return focal_px * baseline_m / disparity_px;
-}
-
-Material noisy(double period_m, int octaves) {
-  return {.name = "noise", .albedo = 0.8, .texture = NoiseTexture{period_m, octaves, 0.8}};
-}
-
-ImagePair images(const StereoPair& pair, const Scene& scene, const RenderAddress& address = {},
-                 const DetectorEffects& effects = noise_free) {
-  return std::get<ImagePair>(render(pair, RayCaster(scene), Pose::Identity(), address, effects));
-}
-
-// The mean electrons of one camera's image, before the detector.
-Image<double> mean_image(const StereoPair& pair, const Scene& scene, StereoSide side) {
-  const RayCaster caster(scene);
-  Image<double> image(pair.calibration.width_px, pair.calibration.height_px);
-  for (int row = 0; row < image.height; ++row)
-    for (int column = 0; column < image.width; ++column)
-      image(column, row) = expected_electrons(pair, caster, Pose::Identity(), side, column, row);
-  return image;
-}
-
-double mean_of(const Image<double>& image) {
-  double sum = 0;
-  for (const double value : image.pixels) sum += value;
-  return sum / static_cast<double>(image.pixels.size());
-}
-
-// A left pixel's rays and those of the right pixel d further left end on the same places of a plane
-// at Z = f B / (d + doffs), up to rounding (1e-15 m); the texture's slope is below 3000 e / 1e-3 m,
-// that of the dots below 2 * 3000 e / 8e-3 m.
-void expect_shifted_copies(const StereoPair& pair, double z_m, int disparity_px) {
-  const Scene scene{.objects = {plane_at(z_m)}, .materials = {noisy(0.05, 4)}};
-  const Image<double> left = mean_image(pair, scene, StereoSide::left);
-  const Image<double> right = mean_image(pair, scene, StereoSide::right);
-  double contrast = 0;
-  for (int row = 0; row < left.height; ++row)
-    for (int column = disparity_px; column < left.width; ++column) {
-      EXPECT_NEAR(left(column, row), right(column - disparity_px, row), 1e-7);
-      contrast = std::max(contrast, std::abs(left(column, row) - left(disparity_px, row)));
-    }
-  EXPECT_GT(contrast, 300) << "a plain image would be a copy at each shift";
-}
-
 TEST(StereoPair, SeesAFacingPlaneShiftedByItsDisparity) {
   expect_shifted_copies(small_pair(), depth_of(8), 8);
-}
-
-// The dots lie on the surface, not in the images.
-TEST(StereoPair, SeesTheProjectedDotsFromBothCameras) {
-  StereoPair pair = small_pair();
-  pair.projector_electrons = 3000;
-  pair.projector_dots = 32;
-  expect_shifted_copies(pair, depth_of(8), 8);
-  pair.ambient_electrons = 0;
-  expect_shifted_copies(pair, depth_of(8), 8);
 }
 
 TEST(StereoPair, CountsDisparityWithoutTheOffsetOfTheRightPrincipalPoint) {
@@ -174,66 +104,6 @@ TEST(StereoPair, HidesAStripBesideAnEdgeFromOneCamera) {
     EXPECT_DOUBLE_EQ(right(column - static_cast<int>(plane_px), 16), 3000);  // the plate covers it
   }
   EXPECT_DOUBLE_EQ(right(34 - strip - static_cast<int>(plane_px), 16), 1500);
-}
-
-StereoPair with_projector() {
-  StereoPair pair = small_pair();
-  pair.calibration.focal_px = 1000;  // a narrow field: cosine and distance vary by less than 1e-3
-  pair.ambient_electrons = 0;
-  pair.projector_electrons = 2000;
-  pair.projector_dots = 64;
-  pair.sub_rays = 6;
-  return pair;
-}
-
-// A cell is dark or, with probability 1/2, holds a dot that covers 0.09 pi of it; (1 - q)^2 has the
-// mean 1/3 over a disc. So the mean is 0.09 pi / 6 and the deviation of a cell as large again. The
-// image covers 64 x 32 cells: 1 sigma = 1 / sqrt(2048) = 2.2 %; 4 sigma. (6 x 6 rays a cell sample
-// the dots' mean without bias, since the dots lie anywhere.)
-TEST(StereoPair, ProjectsDotsOfTheStatedDensity) {
-  const double mean_pattern = 0.09 * std::numbers::pi / 6;
-  const Scene facing{.objects = {plane_at(1)}, .materials = {plain(1)}};
-  const double mean = mean_of(mean_image(with_projector(), facing, StereoSide::left));
-  EXPECT_NEAR(mean / (2000 * mean_pattern), 1, 4 / std::sqrt(2048));
-
-  const Scene tilted{.objects = {plane_at(1, std::numbers::pi / 3)}, .materials = {plain(1)}};
-  const double oblique = mean_of(mean_image(with_projector(), tilted, StereoSide::left));
-  EXPECT_NEAR(oblique / (2000 * mean_pattern), 0.5, 2 * 4 / std::sqrt(2048));
-}
-
-// Scene and baseline twice as large: every ray meets the same place of the pattern at twice the
-// distance, and a quarter of the light comes back.
-TEST(StereoPair, DimsTheProjectorByTheSquareOfTheDistance) {
-  const StereoPair near_pair = with_projector();
-  StereoPair far_pair = near_pair;
-  far_pair.calibration.baseline_m *= 2;
-  const auto at_distance = [](double z_m) {
-    return Scene{.objects = {plane_at(z_m)}, .materials = {plain(1)}};
-  };
-  const Image<double> near_image = mean_image(near_pair, at_distance(1), StereoSide::right);
-  const Image<double> far_image = mean_image(far_pair, at_distance(2), StereoSide::right);
-  for (std::size_t i = 0; i < near_image.pixels.size(); ++i)
-    EXPECT_NEAR(far_image.pixels[i], near_image.pixels[i] / 4, 1e-8);
-}
-
-// As in HidesAStripBesideAnEdgeFromOneCamera with the projector, half a baseline to the right, as
-// the second camera: the strip is half as wide.
-TEST(StereoPair, CastsTheProjectorsShadow) {
-  StereoPair pair = small_pair();
-  pair.projector_electrons = 5000;
-  pair.projector_dots = 32;
-  const double plate_z = depth_of(20), plane_z = depth_of(8);
-  const double edge_m = (34.5 - pair.calibration.cx_px) / focal_px * plate_z;
-  const Scene scene{.objects = {plane_at(plane_z), plate(plate_z, edge_m, 0.9)},
-                    .materials = {plain(0.5)}};
-  const Image<double> left = mean_image(pair, scene, StereoSide::left);
-  double brightest_outside = 0;
-  for (int row = 0; row < left.height; ++row) {
-    for (int column = 29; column < 35; ++column) EXPECT_DOUBLE_EQ(left(column, row), 1500);
-    for (int column = 23; column < 28; ++column)  // dark if the projector were in the right camera
-      brightest_outside = std::max(brightest_outside, left(column, row));
-  }
-  EXPECT_GT(brightest_outside, 1800);
 }
 
 TEST(StereoPair, KnowsWhereTheCentresOfLeftPixelsEnd) {
