@@ -10,7 +10,8 @@ function(scan_add_library name)
   target_include_directories(scan_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                  $<INSTALL_INTERFACE:include>)
   target_link_libraries(scan_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
-  target_compile_options(scan_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+  target_compile_options(scan_${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                             -Wno-missing-field-initializers)
 endfunction()
 
 # scan_add_test(NAME SOURCES... LIBS targets...): one GoogleTest program, each of its tests in ctest.
@@ -19,7 +20,7 @@ function(scan_add_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gtest_main)
-  target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow)
+  target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow -Wno-missing-field-initializers)
   target_compile_definitions(${name} PRIVATE LIBSCAN_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              LIBSCAN_BINARY_DIR="${PROJECT_BINARY_DIR}")
   if(NOT ARG_TIMEOUT)

@@ -15,6 +15,7 @@ struct Hit {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;  // geometric, unit, outward of the object
   int object = -1;
+  std::uint32_t triangle = 0;  // of a mesh
 };
 
 // The same hit as seen along `direction`: its normal turned against the ray. Shells reflect on both

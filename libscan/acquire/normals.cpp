@@ -112,8 +112,8 @@ bool has_grid(const Scan& scan) {
                      [&](std::uint32_t ray) { return ray < cells; });
 }
 
-// normal(i, neighbours, widening) for each finite point: up to two times, a neighbourhood that
-// fixes no plane is doubled in reach.
+// around(i, widening, found) gives the neighbours of point i, itself first. Up to two times, a
+// neighbourhood that fixes no plane is doubled in reach.
 template <class Around>
 void fit_planes(Scan& scan, std::span<const Eigen::Vector3d> viewpoints, Around&& around) {
   PointCloud& cloud = scan.cloud;

@@ -12,7 +12,9 @@ struct NormalOptions {
 };
 
 // Fills scan.cloud.normals by plane fits over the nearest points (weighted by sigma where known)
-// and turns each towards the scanner's origin. A neighbourhood that fixes no plane gives (0, 0, 0).
+// and turns each towards the scanner's origin. With a grid the nearest are those of a square of
+// rays without a jump in depth, else the nearest in space. A neighbourhood that fixes no plane is
+// widened twice, then gives (0, 0, 0).
 // For a laser-line scan, whose viewpoint moves, `viewpoints` has one origin per point; empty: the
 // origin.
 void estimate_normals(Scan& scan, const NormalOptions& options = {},

@@ -13,6 +13,11 @@ struct PhaseOptions {
   double max_inconsistency_sigmas = 4;  // of the frequencies' distances after unwrapping
 };
 
+// Scanner frame = camera; rank-one covariance along the pixel's ray. One frequency: distances are
+// folded into [0, c / 2f), whatever max_range_m. Several: the fold that all agree on, up to
+// max_range_m or to where all phases repeat. Within noise of the end of that range the fold cannot
+// be told and the pixel is ambiguous, unless max_range_m ends before. Throws scan::Error (input)
+// for frames that do not fit their calibration, or a range of over 10,000 wraps.
 Scan acquire_phase(const PhaseTaps& frames, const PhaseOptions& options = {});
 
 }  // namespace scan

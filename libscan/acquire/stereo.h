@@ -14,15 +14,23 @@ struct StereoOptions {
   double disparity_sigma_px = 0;  // 0: estimated per pixel from texture and residual
 };
 
-// Sub-pixel disparity of each left pixel, NaN where there is none (and why: one reason per pixel).
+// Semi-global matching, left-right check, then least squares on the images (see
+// disparity_refinement.h). Sub-pixel disparity of each left pixel, NaN where there is none (and
+// why: one reason per pixel).
 struct DisparityMap {
   Image<float> disparity_px;
   Image<float> sigma_px;
   std::map<std::string, std::size_t> misses;
 };
+
+// No texture along the row: no signal; not unique, or an island of its own (a speckle): ambiguous;
+// partner outside the right image: border; left-right check, or windows that do not correlate:
+// inconsistent. A pattern that repeats within the search range without end is beyond these checks:
+// one of its places is taken.
 DisparityMap match(const ImagePair& pair, const StereoOptions& options = {});
 
-// Points in the left camera's frame with covariance by first-order propagation.
+// Points in the left camera's frame with rank-one covariance by first-order propagation. A
+// disparity within three sigma of infinity (d + doffs = 0), or beyond: undetermined.
 Scan points_from(const DisparityMap& map, const StereoCalibration& calibration);
 
 Scan acquire_stereo(const ImagePair& pair, const StereoOptions& options = {});

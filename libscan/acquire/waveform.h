@@ -15,7 +15,10 @@ struct WaveformOptions {
   double threshold_sigmas = 6;  // of the noise before the echo
 };
 
-// The first echo above the threshold of each ray.
+// The first echo above the threshold of each ray; rank-one covariance along it. The background
+// comes from the ray's own samples and is right while echoes fill less than half of them. An echo
+// within two pulse_sigma_s of the window's ends: border. Throws scan::Error (input) for frames that
+// do not fit their calibration.
 Scan acquire_waveform(const Waveforms& frames, const WaveformOptions& options = {});
 
 }  // namespace scan

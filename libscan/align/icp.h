@@ -4,6 +4,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -30,14 +32,14 @@ std::string_view name_of(Stop stop);  // "converged", "iteration limit", "too fe
 struct IcpOptions {
   IcpMethod method = IcpMethod::point_to_plane;
   SearchMethod search = SearchMethod::kd_tree;
-  double max_pair_distance_m = 0;  // 0: from the data (three times the median pair distance, annealed)
+  double max_pair_distance_m = 0;  // 0: three times the median pair distance, shrinking
   double max_normal_angle_rad = 0.785;  // between paired normals, where both clouds have them
   double trim_fraction = 0.1;      // share of the worst pairs left out
   int max_iterations = 60;
   double stop_rotation_rad = 1e-6;
   double stop_translation_fraction = 1e-6;  // of the source's extent
   // Called after each iteration with the current target_from_source.
-  std::function<void(int iteration, const Pose&)> on_iteration;
+  std::function<void(int iteration, const Pose&)> on_iteration = {};
 };
 
 // Throws scan::Error (usage) naming the option and its limit.
@@ -54,6 +56,7 @@ struct IcpResult {
   std::vector<std::string> weak_directions;  // "slide along ...", "turn about ..." in the target frame
   std::vector<double> history_rms_m;
   std::size_t invalid_points = 0;  // not finite, left out, both clouds together
+  double guess_off_rotation = 0;   // Frobenius distance of the guess's matrix from the rotation used
   Cost cost;
 };
 

@@ -13,12 +13,15 @@
 namespace scan {
 
 struct MultiviewOptions {
-  IcpOptions icp;
+  IcpOptions icp = {};
   double thin_m = 0;          // voxel side for the joint step; 0: from the data
   int max_rounds = 20;        // correspondences found anew, then one Ceres solve
   double min_overlap = 0.1;   // pairs below this inlier fraction do not count
   int anchor = 0;             // the scan whose pose is kept
 };
+
+// Throws scan::Error (usage) naming the option and its limit.
+void check(const MultiviewOptions& options);
 
 struct ScanPose {
   Pose world_from_scan = Pose::Identity();

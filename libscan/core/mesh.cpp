@@ -13,18 +13,23 @@
 namespace scan {
 namespace {
 
+// Side k of a triangle runs from its corner k to k + 1; corner k of triangle t is number 3 t + k.
 struct HalfEdge {
   std::uint32_t low, high;
+  std::size_t low_corner, high_corner;
   bool forward;  // runs from low to high
 };
 
 std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
   std::vector<HalfEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      edges.push_back({std::min(a, b), std::max(a, b), a < b});
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      const std::uint32_t a = mesh.triangles[i][k], b = mesh.triangles[i][next];
+      const std::size_t corner_a = 3 * i + k, corner_b = 3 * i + next;
+      edges.push_back({std::min(a, b), std::max(a, b), a < b ? corner_a : corner_b,
+                       a < b ? corner_b : corner_a, a < b});
     }
   std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
     return std::pair(a.low, a.high) < std::pair(b.low, b.high);
@@ -32,8 +37,7 @@ std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
   return edges;
 }
 
-void count_edges(const Mesh& mesh, EdgeCensus& census) {
-  const auto edges = sorted_half_edges(mesh);
+void count_edges(const std::vector<HalfEdge>& edges, EdgeCensus& census) {
   for (std::size_t first = 0; first < edges.size();) {
     std::size_t last = first, forward = 0;
     for (; last < edges.size() && edges[last].low == edges[first].low &&
@@ -49,25 +53,52 @@ void count_edges(const Mesh& mesh, EdgeCensus& census) {
   }
 }
 
-std::size_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
+// Disjoint sets with the smallest member as their name.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t size) : parent_(size) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
+  std::size_t name_of(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(std::size_t i, std::size_t j) {
+    const std::size_t a = name_of(i), b = name_of(j);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
 
 void count_components(const Mesh& mesh, EdgeCensus& census) {
-  std::vector<std::uint32_t> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0u);
+  DisjointSets sets(mesh.vertices.size());
   std::vector<char> used(mesh.vertices.size(), 0);
   for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) {
-      used[t[k]] = 1;
-      const auto a = find_root(parent, t[0]), b = find_root(parent, t[k]);
-      parent[std::max(a, b)] = static_cast<std::uint32_t>(std::min(a, b));
+    for (const std::uint32_t v : t) {
+      used[v] = 1;
+      sets.unite(t[0], v);
     }
   for (std::size_t i = 0; i < used.size(); ++i) {
     census.used_vertices += used[i];
-    census.components += used[i] && parent[i] == i;
+    census.components += used[i] && sets.name_of(i) == i;
   }
+}
+
+// Corners at a vertex that edges connect form a fan; a manifold vertex has one.
+void count_non_manifold_vertices(const Mesh& mesh, const std::vector<HalfEdge>& edges,
+                                 EdgeCensus& census) {
+  DisjointSets fans(3 * mesh.triangles.size());
+  for (std::size_t i = 1; i < edges.size(); ++i)
+    if (edges[i].low == edges[i - 1].low && edges[i].high == edges[i - 1].high) {
+      fans.unite(edges[i].low_corner, edges[i - 1].low_corner);
+      fans.unite(edges[i].high_corner, edges[i - 1].high_corner);
+    }
+  std::vector<std::uint32_t> fans_at(mesh.vertices.size(), 0);
+  for (std::size_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner)
+    if (fans.name_of(corner) == corner) ++fans_at[mesh.triangles[corner / 3][corner % 3]];
+  for (const std::uint32_t fans_here : fans_at) census.non_manifold_vertices += fans_here > 1;
 }
 
 }  // namespace
@@ -123,8 +154,10 @@ Mesh transformed(const Pose& a_from_b, const Mesh& mesh_in_b) {
 
 EdgeCensus edge_census(const Mesh& mesh) {
   EdgeCensus census;
-  count_edges(mesh, census);
+  const auto edges = sorted_half_edges(mesh);
+  count_edges(edges, census);
   count_components(mesh, census);
+  count_non_manifold_vertices(mesh, edges, census);
   census.euler_characteristic = static_cast<long>(census.used_vertices) -
                                 static_cast<long>(census.edges) +
                                 static_cast<long>(mesh.triangles.size());

@@ -24,6 +24,7 @@ struct Scan {
   std::vector<std::uint32_t> ray;            // index of each point's ray; empty: unknown
   RayGrid grid;                              // ray = row * columns + column
   std::map<std::string, std::size_t> misses;  // reason -> rays without a point
+  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  // scanner frame: normals face this point
   Pose world_from_scanner_guess = Pose::Identity();
 };
 

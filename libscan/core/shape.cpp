@@ -118,19 +118,6 @@ DistanceField simple_field(const CombinedShape& c, const Eigen::Vector3d& x) {
   return result;
 }
 
-// Newton steps along the gradient onto the zero set.
-Eigen::Vector3d onto_surface(const PlacedShape& placed, Eigen::Vector3d x) {
-  for (int step = 0; step < 60; ++step) {
-    const DistanceField f = field(placed, x);
-    const double slope2 = f.gradient.squaredNorm();
-    if (f.value_m == 0 || slope2 < 1e-12) break;
-    const Eigen::Vector3d next = x - f.value_m / slope2 * f.gradient;
-    if (next == x) break;
-    x = next;
-  }
-  return x;
-}
-
 Bounds local_bounds(const Shape& shape) {
   const auto symmetric = [](const Eigen::Vector3d& half) { return Bounds(-half, half); };
   return std::visit(
@@ -185,6 +172,10 @@ void check(const Shape& shape) {
                         [](const TorusShape& t) {
                           check_positive("torus", "major radius", t.major_radius_m);
                           check_positive("torus", "minor radius", t.minor_radius_m);
+                          if (t.minor_radius_m > t.major_radius_m)
+                            throw Error(Trouble::input,
+                                        "torus: minor radius is " + std::to_string(t.minor_radius_m) +
+                                            " m, at most the major radius");
                         },
                         [](const CombinedShape& c) {
                           check_not_negative("combination", "blend", c.blend_m);
@@ -205,27 +196,6 @@ DistanceField field(const PlacedShape& placed, const Eigen::Vector3d& x) {
       rotation.transpose() * (x - placed.parent_from_shape.translation());
   const DistanceField f = field(placed.shape, local);
   return {f.value_m, rotation * f.gradient};
-}
-
-Eigen::Vector3d closest_point(const PlacedShape& placed, const Eigen::Vector3d& x) {
-  Eigen::Vector3d best = onto_surface(placed, x);
-  double best_m = (best - x).norm(), stride = 1;
-  for (int step = 0; step < 200 && best_m > 0 && stride > 1e-10; ++step) {
-    const Eigen::Vector3d normal = field(placed, best).gradient.normalized();
-    const Eigen::Vector3d offset = x - best;
-    const Eigen::Vector3d tangential = offset - normal * normal.dot(offset);
-    if (tangential.norm() < 1e-14 * (1 + best_m)) break;
-    const Eigen::Vector3d trial = onto_surface(placed, best + stride * tangential);
-    const double trial_m = (trial - x).norm();
-    if (trial_m < best_m) {
-      best = trial;
-      best_m = trial_m;
-      stride = std::min(1.0, 2 * stride);
-    } else {
-      stride /= 2;
-    }
-  }
-  return best;
 }
 
 Bounds bounds_of(const PlacedShape& placed) {

@@ -31,7 +31,7 @@ struct BoxShape {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
   double rounding_m = 0;
 };
-// Around the z axis; the tube's centre line has the major radius.
+// Around the z axis; the tube's centre line has the major radius, which is not below the minor.
 struct TorusShape {
   double major_radius_m = 0;
   double minor_radius_m = 0;
@@ -72,9 +72,10 @@ struct DistanceField {
 DistanceField field(const Shape& shape, const Eigen::Vector3d& x_in_shape);
 DistanceField field(const PlacedShape& placed, const Eigen::Vector3d& x_in_parent);
 
-// The surface point nearest to x, found from the field by descent along the surface; exact to
-// rounding where the surface is smooth, to about 1e-9 of the distance beside a sharp edge. For a
-// point so far away that several parts compete it may be a local minimum.
+// The surface point nearest to x. Exact to rounding for the simple shapes. Of a combination the
+// faces, edges and corners that its parts form are looked at in turn, each exact to rounding where
+// the surface is smooth and to about 1e-9 of the distance otherwise; where the combination is
+// blended, or x is farther from it than its parts' radii of curvature, it may be a local minimum.
 Eigen::Vector3d closest_point(const PlacedShape& placed, const Eigen::Vector3d& x_in_parent);
 
 // A box around the solid, in the parent's frame; infinite for a plane.

@@ -13,6 +13,10 @@
 
 namespace scan {
 
+// Readers throw scan::Error: input for what is broken or of another kind, resource above max_image_px;
+// both before anything is allocated. Writers: output.
+inline constexpr std::size_t max_image_px = std::size_t{1} << 27;
+
 using Colour = std::array<std::uint8_t, 3>;
 
 // .png, .jpg. Colours become grey by 0.299 R + 0.587 G + 0.114 B.
@@ -29,7 +33,8 @@ std::string png_bytes(const Image<Colour>& image);  // for pages that carry thei
 Image<float> read_float_image(const std::filesystem::path& path);
 void write_pfm(const std::filesystem::path& path, const Image<float>& image);
 
-// NumPy arrays of any shape, C order, little-endian; npz: the first array.
+// NumPy arrays of any shape in C order, of floats (16, 32, 64 bits), integers or booleans, either byte
+// order; npz (stored or deflated): the first array.
 struct NumberArray {
   std::vector<std::size_t> shape;
   std::vector<double> values;

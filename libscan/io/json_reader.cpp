@@ -73,12 +73,12 @@ const json* JsonReader::find(std::string_view key) {
   return found == object_->end() ? nullptr : &*found;
 }
 
-bool JsonReader::has(std::string_view key) const { return object_->contains(std::string(key)); }
+bool JsonReader::has(std::string_view key) { return find(key) != nullptr; }
 
 bool JsonReader::has_quantity(std::string_view name) const {
   for (const Units* units : {&length_units, &angle_units, &time_units, &frequency_units})
     for (const auto& [suffix, scale] : *units)
-      if (has(std::string(name) + suffix)) return true;
+      if (object_->contains(std::string(name) + suffix)) return true;
   return false;
 }
 

@@ -26,7 +26,7 @@ class JsonReader {
   // `place` is how messages name this object: a file name, then a JSON pointer.
   JsonReader(const nlohmann::json& object, std::string place);
 
-  bool has(std::string_view key) const;             // exactly this key
+  bool has(std::string_view key);                   // exactly this key, known from now on
   bool has_quantity(std::string_view name) const;   // this name with any unit
 
   double number(std::string_view key);

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -37,23 +38,30 @@ struct PlyElement {
 
 struct Ply {
   std::vector<std::string> comments;
+  std::vector<std::string> obj_info;  // `obj_info` lines: what Stanford's scanner software noted
   std::vector<PlyElement> elements;
   const PlyElement* find(std::string_view element) const;
 };
 
 enum class PlyEncoding { ascii, binary_little_endian, binary_big_endian };
 
-// scan::Error (input) names file, element, property and row for anything broken. Memory is bounded
-// by the file's size: a header that claims more rows than the file can hold is refused before any
-// allocation.
+// scan::Error (input) names file, element, property and row (from 0) for anything broken. Memory is
+// bounded by the file's size: a header that claims more rows than the file can hold is refused before
+// any allocation. Header lines may end in \n, \r\n or \r.
 Ply read_ply(const std::filesystem::path& path);
+// The same from memory; `name` is how errors call it.
+Ply parse_ply(std::string_view content, const std::string& name);
 
-// Written whole or not at all.
+// Written whole or not at all. scan::Error (input) if properties differ in length or a name or comment
+// would break the header.
+std::string ply_bytes(const Ply& ply, PlyEncoding encoding = PlyEncoding::binary_little_endian);
 void write_ply(const std::filesystem::path& path, const Ply& ply,
                PlyEncoding encoding = PlyEncoding::binary_little_endian);
 
-// Views on the well-known elements. `mesh_from` triangulates polygons as fans. Missing x, y or z is
-// scan::Error (input) naming `path`.
+// Views on the well-known elements: `vertex` with x y z, nx ny nz, sigma_m, cov_xx cov_xy cov_xz cov_yy
+// cov_yz cov_zz and intensity (or scalar_intensity), `face` with vertex_indices (or vertex_index).
+// `mesh_from` triangulates polygons as fans. Missing x, y or z is scan::Error (input) naming `path`, and
+// so is a face that names a vertex which is not there.
 PointCloud cloud_from(const Ply& ply, const std::filesystem::path& path);
 Mesh mesh_from(const Ply& ply, const std::filesystem::path& path);
 Ply ply_from(const PointCloud& cloud);

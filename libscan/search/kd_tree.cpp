@@ -1,122 +1,165 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
+// The tree of Friedman, Bentley and Finkel (ACM TOMS 3, 1977), with the distance to a node's box
+// kept axis by axis on the way down (Arya and Mount, DCC 1993).
 #include "libscan/search/kd_tree.h"
 
 #include <algorithm>
-#include <Eigen/Geometry>
+#include <limits>
+
+#include "libscan/core/parallel.h"
+#include "libscan/search/collect.h"
+#include "libscan/search/leaf_blocks.h"
 
 namespace scan {
+namespace {
 
-// Nodes split the widest axis at the median; leaves hold up to `leaf_size` consecutive points.
-struct KdTree::Tree {
-  static constexpr std::uint32_t leaf_size = 12;
-  struct Node {
-    std::uint32_t begin = 0, end = 0;  // points of the leaf
-    std::uint32_t right = 0;           // index of the right child; the left one follows; 0: leaf
-    int axis = 0;
-    double split = 0;
+using Points = std::span<LocalPoint>;
+
+// Between the two children, on one axis: `low` is the upper end of the left one, `high` the lower
+// end of the right one.
+struct Split {
+  float low, high;
+  std::uint32_t axis;
+};
+
+std::uint32_t widest_axis(std::span<const LocalPoint> points) {
+  std::array<float, 3> low = points[0].at, high = low;
+  for (const LocalPoint& point : points)
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], point.at[axis]);
+      high[axis] = std::max(high[axis], point.at[axis]);
+    }
+  std::uint32_t widest = 0;
+  for (std::uint32_t axis = 1; axis < 3; ++axis)
+    if (high[axis] - low[axis] > high[widest] - low[widest]) widest = axis;
+  return widest;
+}
+
+// Puts the `count` lowest points along the widest axis in front.
+Split split(Points points, std::size_t count) {
+  const std::uint32_t axis = widest_axis(points);
+  const auto below = [axis](const LocalPoint& a, const LocalPoint& b) {
+    return a.at[axis] < b.at[axis];
   };
-  std::vector<Eigen::Vector3d> points;  // in leaf order
-  std::vector<std::uint32_t> index;     // original index of each
-  std::vector<Node> nodes;
+  const auto middle = points.begin() + static_cast<std::ptrdiff_t>(count);
+  std::nth_element(points.begin(), middle, points.end(), below);
+  return {std::max_element(points.begin(), middle, below)->at[axis], middle->at[axis], axis};
+}
 
-  void build(std::span<const Eigen::Vector3d> all, std::uint32_t begin, std::uint32_t end) {
-    const auto self = nodes.size();
-    nodes.push_back({begin, end, 0, 0, 0});
-    if (end - begin <= leaf_size) return;
-    Eigen::AlignedBox3d box;
-    for (std::uint32_t i = begin; i < end; ++i) box.extend(all[index[i]]);
-    Eigen::Index axis;
-    if (!(box.sizes().maxCoeff(&axis) > 0)) return;  // all the same point
-    const std::uint32_t middle = begin + (end - begin) / 2;
-    std::nth_element(index.begin() + begin, index.begin() + middle, index.begin() + end,
-                     [&](std::uint32_t a, std::uint32_t b) { return all[a][axis] < all[b][axis]; });
-    nodes[self].axis = static_cast<int>(axis);
-    nodes[self].split = all[index[middle]][axis];
-    build(all, begin, middle);
-    nodes[self].right = static_cast<std::uint32_t>(nodes.size());
-    build(all, middle, end);
+}  // namespace
+
+// Leaves are blocks of eight points, all full but the last; a subtree of n leaves has ceil(n / 2)
+// of them on its left, so its shape, and the place of each of its n - 1 splits, follow from n: the
+// left child's splits come right behind its own, then the right child's.
+struct KdTree::Tree {
+  struct Subtree {
+    std::uint32_t splits;  // place of the first split
+    std::uint32_t block;   // first leaf
+    std::uint32_t leaves;
+
+    Subtree left() const { return {splits + 1, block, (leaves + 1) / 2}; }
+    Subtree right() const {
+      const std::uint32_t before = (leaves + 1) / 2;
+      return {splits + before, block + before, leaves - before};
+    }
+  };
+  // A subtree to be searched; `gap2`: squared distance from the query to its box on each axis.
+  struct Visit {
+    Subtree tree;
+    std::array<float, 3> gap2;
+    float distance2() const { return gap2[0] + gap2[1] + gap2[2]; }
+  };
+  static constexpr std::uint32_t parallel_leaves = 512;  // below, a task costs more than it saves
+
+  LocalFrame frame;
+  std::size_t points = 0;
+  std::vector<Split> splits;
+  LeafBlocks blocks;
+
+  void build(const Subtree& tree, Points part, std::span<const Eigen::Vector3d> points_m) {
+    if (tree.leaves == 1) return blocks.fill(tree.block, part, points_m);
+    const std::size_t count = std::size_t{tree.left().leaves} * LeafBlocks::width;
+    splits[tree.splits] = split(part, count);
+    const auto build_child = [&](std::size_t child) {
+      if (child == 0)
+        build(tree.left(), part.first(count), points_m);
+      else
+        build(tree.right(), part.subspan(count), points_m);
+    };
+    parallel_for(2, build_child, tree.leaves > parallel_leaves ? 1 : 2);
   }
 
-  // Calls visit(index, distance2) for the points of each leaf that may hold one within `limit2`
-  // (read anew each time, so that visit may shrink it).
-  template <class Visit>
-  void search(std::size_t node_index, const Eigen::Vector3d& query, double& limit2,
-              Visit&& visit) const {
-    const Node& node = nodes[node_index];
-    if (node.right == 0) {
-      for (std::uint32_t i = node.begin; i < node.end; ++i)
-        visit(index[i], (points[i] - query).squaredNorm());
-      return;
+  // The child that the query is nearer to; the other one is put on the stack if it is near enough.
+  template <class Collector>
+  Subtree nearer_child(const Visit& visit, const Screen<Collector>& screen, Visit*& top) const {
+    const Split& split = splits[visit.tree.splits];
+    const float at = screen.at()[split.axis];
+    const bool go_right = (at - split.low) + (at - split.high) >= 0;
+    const float gap = at - (go_right ? split.low : split.high);
+    // Written in place, number by number: to copy it whole would make the processor wait for its
+    // own stores, for half of the search's time.
+    top->gap2 = visit.gap2;
+    top->gap2[split.axis] = gap * gap;
+    top->tree = go_right ? visit.tree.left() : visit.tree.right();
+    if (top->distance2() <= screen.limit2()) ++top;
+    return go_right ? visit.tree.right() : visit.tree.left();
+  }
+
+  template <class Collector>
+  void search(const Eigen::Vector3d& query, Collector& collector) const {
+    if (points == 0) return;
+    Screen<Collector> screen(frame, query, collector);
+    std::array<Visit, 33> stack;  // one a level, and 2^32 leaves have 32
+    Visit* top = stack.data();
+    *top++ = {{0, 0, static_cast<std::uint32_t>(blocks.size())}, {0, 0, 0}};
+    while (top != stack.data()) {
+      Visit visit = *--top;
+      if (!(visit.distance2() <= screen.limit2())) continue;
+      while (visit.tree.leaves > 1) visit.tree = nearer_child(visit, screen, top);
+      blocks.scan(visit.tree.block, screen);
     }
-    const double gap = query[node.axis] - node.split;
-    const std::size_t near = gap < 0 ? node_index + 1 : node.right;
-    const std::size_t far = gap < 0 ? node.right : node_index + 1;
-    search(near, query, limit2, visit);
-    if (gap * gap <= limit2) search(far, query, limit2, visit);
   }
 };
 
 KdTree::KdTree(std::span<const Eigen::Vector3d> points) : tree_(std::make_unique<Tree>()) {
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (points[i].allFinite()) tree_->index.push_back(i);
-  tree_->build(points, 0, static_cast<std::uint32_t>(tree_->index.size()));
-  for (const std::uint32_t i : tree_->index) tree_->points.push_back(points[i]);
+  tree_->frame = local_frame(points);
+  std::vector<LocalPoint> local = local_points(points, tree_->frame);
+  tree_->points = local.size();
+  if (local.empty()) return;
+  const std::size_t leaves = (local.size() + LeafBlocks::width - 1) / LeafBlocks::width;
+  tree_->blocks.resize(leaves);
+  tree_->splits.resize(leaves - 1);
+  tree_->build({0, 0, static_cast<std::uint32_t>(leaves)}, local, points);
 }
 
 KdTree::~KdTree() = default;
 KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 
-std::size_t KdTree::size() const { return tree_->index.size(); }
-
-namespace {
-bool before(const Neighbour& a, const Neighbour& b) {
-  return a.distance2_m2 < b.distance2_m2 ||
-         (a.distance2_m2 == b.distance2_m2 && a.index < b.index);
+std::size_t KdTree::size() const {
+  return tree_->points;
 }
-}  // namespace
 
 std::optional<Neighbour> KdTree::nearest(const Eigen::Vector3d& query,
                                          double max_distance_m) const {
-  std::optional<Neighbour> best;
-  double limit2 = max_distance_m * max_distance_m;
-  tree_->search(0, query, limit2, [&](std::uint32_t index, double distance2) {
-    const Neighbour candidate{index, distance2};
-    if (distance2 > limit2 || (best && !before(candidate, *best))) return;
-    best = candidate;
-    limit2 = distance2;
-  });
-  return best;
+  NearestCollector collector(max_distance_m);
+  tree_->search(query, collector);
+  return collector.take();
 }
 
 void KdTree::k_nearest(const Eigen::Vector3d& query, std::size_t k,
                        std::vector<Neighbour>& found) const {
-  found.clear();
-  if (k == 0) return;
-  double limit2 = unlimited_m;
-  tree_->search(0, query, limit2, [&](std::uint32_t index, double distance2) {
-    const Neighbour candidate{index, distance2};
-    if (found.size() == k && !before(candidate, found.front())) return;
-    if (found.size() == k) {
-      std::pop_heap(found.begin(), found.end(), before);
-      found.pop_back();
-    }
-    found.push_back(candidate);
-    std::push_heap(found.begin(), found.end(), before);
-    if (found.size() == k) limit2 = found.front().distance2_m2;
-  });
-  std::sort_heap(found.begin(), found.end(), before);
+  NearestKCollector collector(k, found);
+  tree_->search(query, collector);
+  collector.finish();
 }
 
 void KdTree::within(const Eigen::Vector3d& query, double radius_m,
                     std::vector<Neighbour>& found) const {
-  found.clear();
-  double limit2 = radius_m * radius_m;
-  tree_->search(0, query, limit2, [&](std::uint32_t index, double distance2) {
-    if (distance2 <= limit2) found.push_back({index, distance2});
-  });
-  std::sort(found.begin(), found.end(), before);
+  WithinCollector collector(radius_m, found);
+  tree_->search(query, collector);
+  collector.finish();
 }
 
 }  // namespace scan

@@ -29,14 +29,24 @@ struct Neighbour {
 // the radius (inclusive); both sorted by (distance, index) and written over `found`. The query must
 // be finite. All are safe to call from many threads.
 template <class S>
-concept NeighbourSearch =
-    requires(const S& search, const Eigen::Vector3d& query, std::size_t k, double distance_m,
-             std::vector<Neighbour>& found) {
-      { search.size() } -> std::convertible_to<std::size_t>;
-      { search.nearest(query, distance_m) } -> std::same_as<std::optional<Neighbour>>;
-      { search.k_nearest(query, k, found) } -> std::same_as<void>;
-      { search.within(query, distance_m, found) } -> std::same_as<void>;
-    };
+concept NeighbourSearch = requires(const S& search, const Eigen::Vector3d& query, std::size_t k,
+                                   double distance_m, std::vector<Neighbour>& found) {
+  { search.size() } -> std::convertible_to<std::size_t>;
+  { search.nearest(query, distance_m) } -> std::same_as<std::optional<Neighbour>>;
+  { search.k_nearest(query, k, found) } -> std::same_as<void>;
+  { search.within(query, distance_m, found) } -> std::same_as<void>;
+};
+
+// The order of answers: by distance, then by index.
+inline bool nearer(const Neighbour& a, const Neighbour& b) {
+  return a.distance2_m2 < b.distance2_m2 || (a.distance2_m2 == b.distance2_m2 && a.index < b.index);
+}
+
+// The squared distance by which all models decide; one order of operations, so the same bits.
+inline double squared_distance_m2(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const double x = a.x() - b.x(), y = a.y() - b.y(), z = a.z() - b.z();
+  return x * x + y * y + z * z;
+}
 
 inline constexpr double unlimited_m = std::numeric_limits<double>::infinity();
 

@@ -23,11 +23,14 @@ struct PoseError {
 std::vector<PoseError> pose_errors(std::span<const Pose> estimated, std::span<const Pose> truth,
                                    std::span<const std::vector<Eigen::Vector3d>> points_in_scanner);
 
-// The gauge motion that pose_errors removes: true_from_estimated_world.
+// The gauge motion that pose_errors removes: true_from_estimated_world. Both throw scan::Error:
+// (input) for lists of different lengths, a scan without points or a pose that is not finite;
+// (computation) if all points lie on one line. Of a single scan the gauge takes up the whole error.
 Pose gauge(std::span<const Pose> estimated, std::span<const Pose> truth,
            std::span<const std::vector<Eigen::Vector3d>> points_in_scanner);
 
-// rotation_error, translation_error, pose_error_rms (largest over scans) and their means.
+// rotation_error, translation_error, pose_error_rms (largest over scans) and their means over scans,
+// rotation_error_mean, translation_error_mean, pose_error_rms_mean.
 std::vector<Measurement> summarise(const std::vector<PoseError>& errors);
 
 }  // namespace scan

@@ -43,7 +43,9 @@ struct SurfaceErrorOptions {
 };
 
 // accuracy_mean, _rms, _p95, _max (measured to truth, unsigned), completeness_mean, _rms, _p95, _max
-// (truth to measured), f_score, normal_error_mean (rad, at the measured samples).
+// (truth to measured), f_score, normal_error_mean (rad, between oriented normals at the measured
+// samples; only if normals are known). Throws scan::Error (input) for nothing measured, (computation)
+// if no part of the truth was seen.
 std::vector<Measurement> surface_error(const Mesh& measured, const TrueSurface& truth,
                                        const SurfaceErrorOptions& options = {});
 std::vector<Measurement> cloud_error(const PointCloud& measured, const TrueSurface& truth,
@@ -52,18 +54,22 @@ std::vector<Measurement> cloud_error(const PointCloud& measured, const TrueSurfa
 // Signed deviation of each point from the truth, metres, for colour maps and histograms.
 std::vector<double> deviations_m(std::span<const Eigen::Vector3d> points, const TrueSurface& truth);
 
-// Samples of a true surface, uniform by area, with outward normals: meshes by triangle; shapes by
-// projecting a dense isotropic set of points onto the zero set. Points inside another solid of the
-// union are left out.
+// `count` samples of a true surface, uniform by area, with outward normals: meshes by triangle;
+// bounded shapes, combinations and blends too, where random lines cross them. Points that another
+// solid of the union covers are left out. A plane has no end and is sampled inside the shadow that
+// the bounded parts and `plane_region` (may be empty) cast on it. Throws scan::Error (input) if
+// nothing bounds a plane, (computation) if nothing of the surface is visible.
 std::vector<SurfaceSample> sample_truth(const TrueSurface& truth, std::size_t count,
-                                        std::uint64_t seed);
+                                        std::uint64_t seed, const Bounds& plane_region = Bounds());
 
 // range_error_bias, range_error_rms, range_error_p95 (m, along the ray), ray_hit_fraction of the rays
-// that truly hit, and normalised_range_error_rms (range error over sigma; 1 is honest).
+// that truly hit, and normalised_range_error_rms (range error over sigma; 1 is honest; only with a
+// positive sigma somewhere). Of several points on one ray the nearest counts. Throws scan::Error
+// (input) for a ray number that the truth does not have.
 std::vector<Measurement> range_error(const PointCloud& cloud_in_scanner,
                                      std::span<const std::uint32_t> ray, const ScanTruth& truth);
 
-// components, boundary_edges, non_manifold_edges, genus.
+// components, boundary_edges, non_manifold_edges, genus (NaN unless closed and manifold).
 std::vector<Measurement> topology(const Mesh& mesh);
 
 }  // namespace scan

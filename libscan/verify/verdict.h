@@ -13,12 +13,12 @@ namespace scan {
 struct Measurement {
   std::string name;
   double value = 0;
-  std::string unit;  // "m", "rad", "1" or "count"
+  std::string unit;  // "m", "rad", "px", "1" or "count"
   std::string over;
   std::size_t count = 0;
-  std::optional<double> limit;
-  std::string relation;  // "<=", ">=" or "==" when there is a limit
-  std::string reason;    // of the limit
+  std::optional<double> limit = {};
+  std::string relation = {};  // "<=", ">=" or "==" when there is a limit
+  std::string reason = {};    // of the limit
   bool pass = true;      // true without a limit; NaN never passes a limit
 };
 
@@ -35,8 +35,9 @@ struct Verdict {
   bool pass = true;
 };
 
-// Attaches limits to the measurements of the same name. Throws scan::Error (input) for a limit whose
-// name was not measured, with the nearest name as a hint.
+// Attaches limits to the measurements of the same name; a measurement with several limits is listed
+// once for each. Throws scan::Error (input) for a limit whose name was not measured, with the nearest
+// name as a hint, and for a relation that is none of the three or a limit that is NaN.
 Verdict judge(std::vector<Measurement> measurements, const std::vector<Limit>& limits);
 
 }  // namespace scan

@@ -29,13 +29,6 @@ double window_start_s(const PulsedLidar& s) {
   return 2 * s.min_range_m / speed_of_light_m_s - window_margin_sigmas * s.pulse_sigma_s;
 }
 
-// Of the pulse as recorded: the variance of the sampling interval, h^2 / 12, adds to the pulse's
-// own.
-double recorded_sigma_s(const PulsedLidar& s) {
-  return std::sqrt(s.pulse_sigma_s * s.pulse_sigma_s +
-                   s.sample_interval_s * s.sample_interval_s / 12);
-}
-
 // Enough that the last sample lies at or behind the window's end. May exceed what an integer holds.
 double samples_in_window(const PulsedLidar& s) {
   const double length_s = 2 * (s.max_range_m - s.min_range_m) / speed_of_light_m_s +
@@ -196,7 +189,7 @@ RawFrames render(const PulsedLidar& s, const RayCaster& caster, const Pose& worl
   check(s);
   Waveforms frames{.calibration = {.sample_interval_s = s.sample_interval_s,
                                    .window_start_s = window_start_s(s),
-                                   .pulse_sigma_s = recorded_sigma_s(s),
+                                   .pulse_sigma_s = s.pulse_sigma_s,
                                    .sensor = delivered_sensor(s.sensor, effects)},
                    .grid = grid_of(s),
                    .directions = ray_directions(s),

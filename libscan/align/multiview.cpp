@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/align/multiview.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "libscan/align/placement.h"
+#include "libscan/align/scan_pairs.h"
+#include "libscan/core/error.h"
+#include "libscan/core/parallel.h"
+#include "libscan/search/voxel_grid.h"
+
+namespace scan {
+namespace {
+
+using PreparedScans = std::vector<std::unique_ptr<PreparedScan>>;
+constexpr std::size_t least_points = 6;
+// Thinning keeps about every fourth point of a surface.
+constexpr double thin_in_spacings = 2;
+// Partners may be this many spacings of the thinned scans, or residuals after placing, apart.
+constexpr double gate_in_spacings = 3;
+
+void check_input(std::span<const PointCloud> clouds, std::span<const Pose> guesses,
+                 const MultiviewOptions& options) {
+  check(options);
+  if (clouds.size() != guesses.size())
+    throw Error(Trouble::input, "align_scans: " + std::to_string(clouds.size()) + " scans, " +
+                                    std::to_string(guesses.size()) + " guesses; must be equal");
+  if (!clouds.empty() && static_cast<std::size_t>(options.anchor) >= clouds.size())
+    throw Error(Trouble::usage, "align_scans: anchor: " + std::to_string(options.anchor) +
+                                    ", must be below " + std::to_string(clouds.size()));
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    check(clouds[i]);
+    if (!clouds[i].empty() && clouds[i].normals.empty())
+      throw Error(Trouble::input, "align_scans: scan " + std::to_string(i) + " has no normals",
+                  "estimate normals first");
+    if (!guesses[i].matrix().allFinite())
+      throw Error(Trouble::input, "align_scans: guess " + std::to_string(i) + " is not finite");
+  }
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Alignment of all scans, in a frame that is the world moved to `origin_`.
+class Alignment {
+ public:
+  Alignment(std::span<const PointCloud> clouds, std::span<const Pose> guesses,
+            const MultiviewOptions& options, const Progress& progress);
+  MultiviewResult run();
+
+ private:
+  void prepare();
+  double thinning_side_m(const std::vector<PointCloud>& finite) const;
+  void place();
+  void refine();
+  DataFrame shared_frame() const;
+  JointGates first_gates() const;
+  bool move_scans(const JointPairs& pairs, const DataFrame& frame);
+  void judge(const JointPairs& pairs, const DataFrame& frame);
+  void judge_scan(std::size_t i, const JointPairs& pairs, const DataFrame& frame);
+  Stop overall() const;
+
+  std::span<const PointCloud> clouds_;
+  const MultiviewOptions& options_;
+  const Progress& progress_;
+  std::size_t anchor_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  PreparedScans scans_;
+  std::vector<bool> placed_;
+  std::vector<bool> still_;  // moved less than the tolerances in the last round
+  MultiviewResult result_;
+};
+
+Alignment::Alignment(std::span<const PointCloud> clouds, std::span<const Pose> guesses,
+                     const MultiviewOptions& options, const Progress& progress)
+    : clouds_(clouds),
+      options_(options),
+      progress_(progress),
+      anchor_(static_cast<std::size_t>(options.anchor)),
+      placed_(clouds.size(), false),
+      still_(clouds.size(), false) {
+  result_.scans.resize(clouds.size());
+  origin_ = guesses[anchor_].translation();
+  const Bounds box = bounds_of(clouds[anchor_].points);
+  if (!box.isEmpty()) origin_ = guesses[anchor_] * box.center();
+  for (std::size_t i = 0; i < clouds.size(); ++i)
+    result_.scans[i].world_from_scan =
+        make_pose(nearest_rotation(guesses[i].linear()), guesses[i].translation() - origin_);
+}
+
+double Alignment::thinning_side_m(const std::vector<PointCloud>& finite) const {
+  if (options_.thin_m > 0) return options_.thin_m;
+  std::vector<double> spacings(finite.size());
+  parallel_for(
+      finite.size(), [&](std::size_t i) { spacings[i] = LocalSurface(finite[i].points).spacing_m(); },
+      1);
+  std::erase(spacings, 0);
+  return thin_in_spacings * median(std::move(spacings));
+}
+
+void Alignment::prepare() {
+  std::vector<PointCloud> finite;
+  for (const PointCloud& cloud : clouds_) finite.push_back(subset(cloud, finite_points(cloud)));
+  const double side_m = thinning_side_m(finite);
+  scans_.resize(finite.size());
+  parallel_for(
+      finite.size(),
+      [&](std::size_t i) {
+        scans_[i] = std::make_unique<PreparedScan>(
+            side_m > 0 && !finite[i].empty() ? voxel_grid(finite[i], side_m) : std::move(finite[i]));
+      },
+      1);
+}
+
+void Alignment::place() {
+  std::vector<PointCloud> clouds;
+  std::vector<KdTree> searches;
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    clouds.push_back(scans_[i]->cloud);
+    searches.emplace_back(scans_[i]->cloud.points);
+    const bool enough = scans_[i]->cloud.size() >= least_points;
+    result_.scans[i].stop = enough ? Stop::no_correspondences : Stop::too_few_points;
+  }
+  if (result_.scans[anchor_].stop == Stop::too_few_points) return;
+  placed_[anchor_] = true;
+  place_in_turn(clouds, searches, options_, progress_, result_.scans, placed_);
+}
+
+DataFrame Alignment::shared_frame() const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0, sum2 = 0;
+  const auto each_point = [&](auto&& use) {
+    for (std::size_t i = 0; i < scans_.size(); ++i)
+      if (placed_[i])
+        for (const Eigen::Vector3d& x : scans_[i]->cloud.points)
+          use(result_.scans[i].world_from_scan * x);
+  };
+  each_point([&](const Eigen::Vector3d& x) { sum += x, ++count; });
+  const Eigen::Vector3d centre = sum / count;
+  each_point([&](const Eigen::Vector3d& x) { sum2 += (x - centre).squaredNorm(); });
+  return {centre, sum2 > 0 ? std::sqrt(sum2 / count) : 1};
+}
+
+JointGates Alignment::first_gates() const {
+  double largest_m = 0;
+  for (std::size_t i = 0; i < scans_.size(); ++i)
+    if (placed_[i])
+      largest_m = std::max({largest_m, scans_[i]->surface.spacing_m(), result_.scans[i].rms_m});
+  const double given_m = options_.icp.max_pair_distance_m;
+  return {.distance_m = given_m > 0 ? given_m : gate_in_spacings * largest_m,
+          .least_cosine = std::cos(options_.icp.max_normal_angle_rad),
+          .min_overlap = options_.min_overlap};
+}
+
+// Solves the joint problem and moves the scans; true if none moved beyond the tolerances.
+bool Alignment::move_scans(const JointPairs& pairs, const DataFrame& frame) {
+  std::vector<bool> fixed(scans_.size(), true);
+  for (const ScanPairForm& form : pairs.forms) fixed[form.source] = fixed[form.target] = false;
+  fixed[anchor_] = true;
+  const std::vector<Vector6> twists = solve_forms(pairs.forms, scans_.size(), fixed);
+  bool all_still = true;
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    Vector6 twist = twists[i];
+    twist.tail<3>() *= frame.size_m;
+    still_[i] = twist.head<3>().norm() < options_.icp.stop_rotation_rad &&
+                twist.tail<3>().norm() <
+                    options_.icp.stop_translation_fraction * 2 * frame.size_m;
+    all_still = all_still && still_[i];
+    if (fixed[i]) continue;
+    const Eigen::Vector3d& c = frame.centre;
+    ScanPose& scan = result_.scans[i];
+    const Pose moved =
+        Eigen::Translation3d(c) * exp(twist) * Eigen::Translation3d(-c) * scan.world_from_scan;
+    scan.world_from_scan = make_pose(nearest_rotation(moved.linear()), moved.translation());
+    ++scan.iterations;
+  }
+  return all_still;
+}
+
+void Alignment::refine() {
+  const DataFrame frame = shared_frame();
+  JointGates gates = first_gates();
+  JointPairs pairs;
+  for (bool done = false; !done;) {
+    std::vector<Pose> poses;
+    for (const ScanPose& scan : result_.scans) poses.push_back(scan.world_from_scan);
+    pairs = pair_scans(scans_, poses, placed_, frame, gates);
+    gates.tukey_limit_m = pairs.tukey_limit_m;
+    if (pairs.forms.empty() || result_.rounds == options_.max_rounds) break;
+    done = move_scans(pairs, frame);
+    ++result_.rounds;
+    if (progress_) progress_("refine", double(result_.rounds) / options_.max_rounds);
+  }
+  result_.pairs_used = pairs.forms.size() / 2;
+  judge(pairs, frame);
+}
+
+// What the joint step says of one scan, the others held.
+void Alignment::judge_scan(std::size_t i, const JointPairs& pairs, const DataFrame& frame) {
+  Matrix6 information = Matrix6::Zero();
+  for (const ScanPairForm& form : pairs.forms)
+    if (form.source == i || form.target == i) information += form.a;
+  if (information.isZero(0)) return;  // in no joint pair: what placing said holds
+  ScanPose& scan = result_.scans[i];
+  scan.rms_m = pairs.rms_m[i];
+  scan.inlier_fraction_of_source = pairs.paired_fraction[i];
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
+  const Eigen::Index open =
+      (solver.eigenvalues().array() < 1e-9 * solver.eigenvalues()[5]).count();
+  scan.weak_directions = name_motions(solver.eigenvectors().leftCols(open), frame, origin_);
+  scan.stop = !still_[i] ? Stop::iteration_limit : open > 0 ? Stop::degenerate : Stop::converged;
+}
+
+void Alignment::judge(const JointPairs& pairs, const DataFrame& frame) {
+  for (std::size_t i = 0; i < scans_.size(); ++i)
+    if (placed_[i] && i != anchor_) judge_scan(i, pairs, frame);
+  ScanPose& anchor = result_.scans[anchor_];
+  anchor.stop = pairs.forms.empty() && scans_.size() > 1 ? Stop::no_correspondences : Stop::converged;
+  anchor.rms_m = pairs.rms_m[anchor_];
+  anchor.inlier_fraction_of_source = pairs.paired_fraction[anchor_];
+}
+
+// Converged if all scans are; else the gravest of their reasons.
+Stop Alignment::overall() const {
+  for (const Stop stop : {Stop::too_few_points, Stop::no_correspondences, Stop::degenerate,
+                          Stop::iteration_limit})
+    for (const ScanPose& scan : result_.scans)
+      if (scan.stop == stop) return stop;
+  return Stop::converged;
+}
+
+MultiviewResult Alignment::run() {
+  prepare();
+  place();
+  if (placed_[anchor_]) refine();
+  for (ScanPose& scan : result_.scans) scan.world_from_scan.translation() += origin_;
+  result_.stop = overall();
+  return std::move(result_);
+}
+
+}  // namespace
+
+void check(const MultiviewOptions& options) {
+  check(options.icp);
+  if (!(options.thin_m >= 0))
+    throw Error(Trouble::usage, "align_scans: thin_m: " + std::to_string(options.thin_m) +
+                                    ", must be at least 0");
+  if (options.max_rounds < 1)
+    throw Error(Trouble::usage, "align_scans: max_rounds: " + std::to_string(options.max_rounds) +
+                                    ", must be at least 1");
+  if (!(options.min_overlap >= 0 && options.min_overlap <= 1))
+    throw Error(Trouble::usage, "align_scans: min_overlap: " + std::to_string(options.min_overlap) +
+                                    ", must be 0 to 1");
+  if (options.anchor < 0)
+    throw Error(Trouble::usage, "align_scans: anchor: " + std::to_string(options.anchor) +
+                                    ", must be at least 0");
+}
+
+MultiviewResult align_scans(std::span<const PointCloud> clouds, std::span<const Pose> guesses,
+                            const MultiviewOptions& options, const Progress& progress) {
+  const Stopwatch watch;
+  check_input(clouds, guesses, options);
+  if (clouds.empty()) return {};
+  MultiviewResult result = Alignment(clouds, guesses, options, progress).run();
+  for (std::size_t i = 0; i < guesses.size(); ++i)  // untouched poses keep their bits
+    if (result.scans[i].stop == Stop::too_few_points ||
+        result.scans[i].stop == Stop::no_correspondences || i == std::size_t(options.anchor))
+      result.scans[i].world_from_scan = guesses[i];
+  result.cost.seconds = watch.seconds();
+  return result;
+}
+
+}  // namespace scan

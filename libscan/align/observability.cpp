@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/align/observability.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace scan {
+namespace {
+
+// Information below this share of the mean eigenvalue is rounding: normals kept as float are off by
+// 6e-8, whose square is 4e-15; coordinates at 1e7 m with a size of 1 m by 2e-9.
+constexpr double rounding_share = 1e-10;
+// Weak below this multiple of what noise alone gives.
+constexpr double noise_multiple = 4;
+// So many points decide; more would cost time and tell nothing new.
+constexpr std::size_t most_points = 4096;
+
+Vector6 twist_row(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal) {
+  Vector6 row;
+  row << arm.cross(normal), normal;
+  return row;
+}
+
+struct Information {
+  Matrix6 apparent = Matrix6::Zero();
+  Matrix6 noise = Matrix6::Zero();
+  double points = 0, noise_points = 0;
+
+  void add_plane(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal, const LocalFit& fit) {
+    const Vector6 row = twist_row(arm, normal);
+    apparent += row * row.transpose();
+    ++points;
+    if (fit.second_normal.isZero()) return;
+    const double sign = normal.dot(fit.second_normal) < 0 ? -1 : 1;
+    const Vector6 error = twist_row(arm, normal - sign * fit.second_normal);
+    noise += error * error.transpose();
+    ++noise_points;
+  }
+
+  // Fixes the coordinates along the columns of `projector`.
+  void add_mark(const Eigen::Vector3d& arm, const Eigen::Matrix3d& projector) {
+    Eigen::Matrix<double, 3, 6> m;
+    m << -cross_matrix(arm), Eigen::Matrix3d::Identity();
+    apparent += m.transpose() * projector * m;
+    ++points;
+  }
+};
+
+Information gather(std::span<const std::uint32_t> used, std::span<const Eigen::Vector3d> points,
+                   std::span<const Eigen::Vector3d> normals, const LocalSurface& surface,
+                   const DataFrame& frame) {
+  Information sum;
+  for (const std::uint32_t i : used) {
+    const Eigen::Vector3d arm = (points[i] - frame.centre) / frame.size_m;
+    const LocalFit& fit = surface.fit(i);
+    if (!normals.empty()) {
+      sum.add_plane(arm, normals[i], fit);
+    } else if (fit.shape == LocalShape::surface) {
+      sum.add_plane(arm, fit.direction, fit);
+    } else if (fit.shape != LocalShape::unknown) {
+      const Eigen::Vector3d along =
+          fit.shape == LocalShape::line ? fit.direction : Eigen::Vector3d::Zero();
+      sum.add_mark(arm, Eigen::Matrix3d::Identity() - along * along.transpose());
+    }
+  }
+  return sum;
+}
+
+std::string text_of(const Eigen::Vector3d& v, double smallest) {
+  const Eigen::Vector3d w = (v.array().abs() < smallest).select(0, v);
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.4g, %.4g, %.4g)", w.x(), w.y(), w.z());
+  return text;
+}
+
+// Turned so that the largest component is positive: a name does not depend on a sign.
+Vector6 with_sign_of_largest(const Vector6& twist, bool slide) {
+  const Eigen::Vector3d part = slide ? twist.tail<3>() : twist.head<3>();
+  Eigen::Index largest;
+  part.cwiseAbs().maxCoeff(&largest);
+  return part[largest] < 0 ? Vector6(-twist) : twist;
+}
+
+// Axis and pitch of a twist: Murray, Li, Sastry 1994, section 2.3.
+std::string name_turn(const Vector6& twist, const DataFrame& frame, const Eigen::Vector3d& origin) {
+  const Eigen::Vector3d w = twist.head<3>(), t = twist.tail<3>() * frame.size_m;
+  const Eigen::Vector3d axis = w.normalized();
+  const Eigen::Vector3d through = origin + frame.centre + w.cross(t) / w.squaredNorm();
+  const double pitch_m_per_rad = w.dot(t) / w.squaredNorm();
+  std::string name = " about " + text_of(axis, 5e-4) + " through " + text_of(through, 0) + " m";
+  if (std::abs(pitch_m_per_rad) < 0.05 * frame.size_m) return "turn" + name;
+  char pitch[48];
+  std::snprintf(pitch, sizeof pitch, " by %.4g m per turn", 2 * std::numbers::pi * pitch_m_per_rad);
+  return "screw" + name + pitch;
+}
+
+}  // namespace
+
+TwistBasis weak_motions(std::span<const std::uint32_t> used, std::span<const Eigen::Vector3d> points,
+                        std::span<const Eigen::Vector3d> normals, LocalSurface& surface,
+                        const DataFrame& frame) {
+  const std::size_t stride = std::max<std::size_t>(1, used.size() / most_points);
+  std::vector<std::uint32_t> sample;
+  for (std::size_t i = 0; i < used.size(); i += stride) sample.push_back(used[i]);
+  surface.prepare(sample);
+  const Information sum = gather(sample, points, normals, surface, frame);
+  Matrix6 limit = rounding_share * std::max(sum.apparent.trace() / 6, 1e-300) * Matrix6::Identity();
+  if (sum.noise_points > 0)
+    limit += noise_multiple * sum.points / sum.noise_points * sum.noise;
+  // A v = mu limit v, weak where mu < 1.
+  const Eigen::LLT<Matrix6> factor(limit);
+  Matrix6 whitened = factor.matrixL().solve(sum.apparent);
+  whitened = factor.matrixL().solve(Matrix6(whitened.transpose()));
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(0.5 * (whitened + whitened.transpose()));
+  const Eigen::Index count = (solver.eigenvalues().array() < 1).count();
+  if (count == 0) return TwistBasis(6, 0);
+  TwistBasis weak = factor.matrixU().solve(solver.eigenvectors().leftCols(count));
+  for (Eigen::Index i = 0; i < count; ++i) weak.col(i).normalize();
+  const Eigen::HouseholderQR<TwistBasis> qr(weak);
+  return qr.householderQ() * TwistBasis::Identity(6, count);
+}
+
+std::vector<std::string> name_motions(const TwistBasis& motions, const DataFrame& frame,
+                                      const Eigen::Vector3d& origin) {
+  std::vector<std::string> names;
+  if (motions.cols() == 0) return names;
+  // The combinations without rotation are slides; what is orthogonal to them are turns.
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(motions.topRows<3>()),
+                                              Eigen::ComputeThinU | Eigen::ComputeFullV);
+  for (Eigen::Index i = motions.cols(); i-- > 0;) {
+    const double turning = i < svd.singularValues().size() ? svd.singularValues()[i] : 0;
+    const bool slide = turning < 0.2;
+    const Vector6 twist = with_sign_of_largest(motions * svd.matrixV().col(i), slide);
+    names.push_back(slide ? "slide along " + text_of(twist.tail<3>().normalized(), 5e-4)
+                          : name_turn(twist, frame, origin));
+  }
+  return names;
+}
+
+Vector6 solve_withholding(const Matrix6& a, const Vector6& b, const TwistBasis& withheld) {
+  const Matrix6 projector = complement_projector(withheld);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(projector * a * projector);
+  const Vector6 along = solver.eigenvectors().transpose() * (projector * b);
+  const double least = 1e-12 * solver.eigenvalues()[5];
+  Vector6 x = Vector6::Zero();
+  for (int i = 0; i < 6; ++i)
+    if (solver.eigenvalues()[i] > least)
+      x += along[i] / solver.eigenvalues()[i] * solver.eigenvectors().col(i);
+  return projector * x;
+}
+
+Matrix6 complement_projector(const TwistBasis& withheld) {
+  return Matrix6::Identity() - withheld * withheld.transpose();
+}
+
+}  // namespace scan

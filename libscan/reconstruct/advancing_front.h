@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// CGAL's advancing front (GPL), alone in the target libscan::cgal.
+#pragma once
+
+#include <span>
+
+#include "libscan/core/mesh.h"
+
+namespace scan {
+
+// Triangles over the points; vertices are the points themselves, in their order.
+Mesh advancing_front(std::span<const Eigen::Vector3d> points);
+
+}  // namespace scan

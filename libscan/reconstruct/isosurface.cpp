@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/reconstruct/isosurface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "libscan/core/parallel.h"
+#include "libscan/reconstruct/cell_polygons.h"
+
+namespace scan {
+namespace {
+
+constexpr double snap_guard = 5e-4;
+
+struct CrossedCell {
+  FieldCell cell;
+  std::array<double, 8> corners;
+  std::uint32_t first_vertex = 0;  // of its own edges (those at its lowest corner), then centres
+  CellPolygons polygons;
+};
+
+using CellPlace = std::array<std::int32_t, 3>;
+
+CellPlace sort_key(const FieldCell& cell) { return {cell.place[2], cell.place[1], cell.place[0]}; }
+
+// Value at a corner: the mean of its eight functions' coefficients, summed in the functions' order.
+double corner_value(const FieldCell& cell, int corner) {
+  const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+  double sum = 0;
+  for (int c = 0; c < 2; ++c)
+    for (int b = 0; b < 2; ++b)
+      for (int a = 0; a < 2; ++a) sum += cell.coefficients[x + a + 3 * (y + b) + 9 * (z + c)];
+  return sum / 8;
+}
+
+std::array<double, 8> corner_values(const FieldCell& cell) {
+  std::array<double, 8> values;
+  const int last = 1 << cell.depth;
+  for (int corner = 0; corner < 8; ++corner) {
+    values[corner] = corner_value(cell, corner);
+    for (int a = 0; a < 3; ++a) {
+      const int at = cell.place[a] + (corner >> a & 1);
+      if (at == 0 || at == last) values[corner] = std::abs(values[corner]);
+    }
+  }
+  return values;
+}
+
+bool may_hold_zero(const FieldCell& cell) {
+  const auto [low, high] =
+      std::minmax_element(cell.coefficients.begin(), cell.coefficients.end());
+  if (*low >= 0) return false;
+  if (*high >= 0) return true;
+  const int last = (1 << cell.depth) - 1;
+  for (const int at : cell.place)
+    if (at == 0 || at == last) return true;  // the wall counts as outside
+  return false;
+}
+
+constexpr int task_depth = 4;  // cells of this depth are walked in parallel
+
+bool is_empty(const SplineField& field, const FieldCell& cell) {
+  return !may_hold_zero(cell) && !has_finer_functions(field, cell);
+}
+
+void collect_tasks(const SplineField& field, const FieldCell& cell, int depth,
+                   std::vector<FieldCell>& tasks) {
+  if (cell.depth == depth)
+    tasks.push_back(cell);
+  else if (!is_empty(field, cell))
+    for (int octant = 0; octant < 8; ++octant)
+      collect_tasks(field, child_cell(field, cell, octant), depth, tasks);
+}
+
+void collect_crossed(const SplineField& field, const FieldCell& cell, int depth,
+                     std::vector<CrossedCell>& crossed) {
+  if (cell.depth == depth) {
+    if (!may_hold_zero(cell)) return;
+    const std::array<double, 8> values = corner_values(cell);
+    const auto inside = std::count_if(values.begin(), values.end(), [](double v) { return v < 0; });
+    if (inside > 0 && inside < 8) crossed.push_back({cell, values, 0, cell_polygons(values)});
+    return;
+  }
+  if (is_empty(field, cell)) return;
+  for (int octant = 0; octant < 8; ++octant)
+    collect_crossed(field, child_cell(field, cell, octant), depth, crossed);
+}
+
+std::vector<CrossedCell> crossed_cells(const SplineField& field, int depth) {
+  std::vector<FieldCell> tasks;
+  collect_tasks(field, coarsest_cell(field), std::min(depth, task_depth), tasks);
+  std::vector<std::vector<CrossedCell>> parts(tasks.size());
+  parallel_for(
+      tasks.size(), [&](std::size_t i) { collect_crossed(field, tasks[i], depth, parts[i]); }, 4);
+  std::vector<CrossedCell> cells;
+  for (auto& part : parts) {
+    cells.insert(cells.end(), part.begin(), part.end());
+    part = {};
+  }
+  std::sort(cells.begin(), cells.end(), [](const CrossedCell& a, const CrossedCell& b) {
+    return sort_key(a.cell) < sort_key(b.cell);
+  });
+  return cells;
+}
+
+// Edges at the lowest corner: along x, y, z they are edges 0, 4 and 8.
+bool owns_crossing(const CrossedCell& c, int axis) {
+  return (c.corners[0] < 0) != (c.corners[1 << axis] < 0);
+}
+
+bool needs_centre(int loop_size) { return loop_size > 5; }
+
+void number_vertices(std::vector<CrossedCell>& cells, std::size_t& count) {
+  count = 0;
+  for (CrossedCell& c : cells) {
+    c.first_vertex = static_cast<std::uint32_t>(count);
+    for (int axis = 0; axis < 3; ++axis) count += owns_crossing(c, axis);
+    for (int loop = 0; loop < c.polygons.loops; ++loop)
+      count += needs_centre(c.polygons.sizes[loop]);
+  }
+}
+
+// Root of the parabola with spline coefficients q along a cell, where its ends differ in sign.
+double parabola_root(const std::array<double, 3>& q) {
+  const double start = (q[0] + q[1]) / 2, slope = q[1] - q[0], bend = (q[0] - 2 * q[1] + q[2]) / 2;
+  const double end = (q[1] + q[2]) / 2;
+  if ((start < 0) == (end < 0)) return start < end ? 0 : 1;  // an end on the wall: that is outside
+  // start + slope t + bend t^2 = 0 without cancellation; the one root between the ends.
+  const double root = std::sqrt(std::max(0.0, slope * slope - 4 * bend * start));
+  const double sum = -(slope + std::copysign(root, slope)) / 2;
+  const double first = sum / bend, second = start / sum;
+  return second >= 0 && second <= 1 ? second : first;
+}
+
+double edge_parameter(const CrossedCell& c, int axis) {
+  constexpr int strides[3] = {1, 3, 9};
+  const int u = strides[(axis + 1) % 3], v = strides[(axis + 2) % 3];
+  std::array<double, 3> q;
+  for (int i = 0; i < 3; ++i) {
+    const double* at = c.cell.coefficients.data() + i * strides[axis];
+    q[i] = (at[0] + at[u] + at[v] + at[u + v]) / 4;
+  }
+  const double t = parabola_root(q);
+  return std::isfinite(t) ? std::clamp(t, snap_guard, 1 - snap_guard) : 0.5;
+}
+
+class Polygonizer {
+ public:
+  explicit Polygonizer(const SplineField& field, int depth)
+      : cell_size_(1.0 / (1 << depth)), cells_(crossed_cells(field, depth)) {
+    number_vertices(cells_, vertices_);
+  }
+
+  Mesh mesh() const {
+    Mesh mesh;
+    mesh.vertices.resize(vertices_);
+    parallel_for(cells_.size(), [&](std::size_t i) { place_edge_vertices(cells_[i], mesh); });
+    std::vector<std::vector<Triangle>> parts((cells_.size() + chunk - 1) / chunk);
+    parallel_chunks(cells_.size(), chunk, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) add_polygons(cells_[i], mesh, parts[begin / chunk]);
+    });
+    for (const auto& part : parts)
+      mesh.triangles.insert(mesh.triangles.end(), part.begin(), part.end());
+    return mesh;
+  }
+
+ private:
+  static constexpr std::size_t chunk = 512;
+
+  Eigen::Vector3d in_cube(const CrossedCell& c, const Eigen::Vector3d& in_cell) const {
+    return (Eigen::Vector3d(c.cell.place[0], c.cell.place[1], c.cell.place[2]) + in_cell) *
+           cell_size_;
+  }
+
+  void place_edge_vertices(const CrossedCell& c, Mesh& mesh) const {
+    std::uint32_t vertex = c.first_vertex;
+    for (int axis = 0; axis < 3; ++axis)
+      if (owns_crossing(c, axis))
+        mesh.vertices[vertex++] =
+            in_cube(c, edge_parameter(c, axis) * Eigen::Vector3d::Unit(axis));
+  }
+
+  std::uint32_t vertex_of(const CrossedCell& c, int edge) const {
+    const int corner = edge_start_corner(edge);
+    const CrossedCell* owner = &c;
+    if (corner != 0) {
+      FieldCell wanted;
+      for (int a = 0; a < 3; ++a) wanted.place[a] = c.cell.place[a] + (corner >> a & 1);
+      owner = &*std::lower_bound(cells_.begin(), cells_.end(), sort_key(wanted),
+                                 [](const CrossedCell& other, const CellPlace& key) {
+                                   return sort_key(other.cell) < key;
+                                 });
+    }
+    std::uint32_t vertex = owner->first_vertex;
+    for (int axis = 0; axis < edge / 4; ++axis) vertex += owns_crossing(*owner, axis);
+    return vertex;
+  }
+
+  // The mean of a loop, moved along the gradient to the level set as long as it stays in the cell.
+  Eigen::Vector3d centre(const CrossedCell& c, const Mesh& mesh,
+                         const std::vector<std::uint32_t>& loop) const {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const std::uint32_t v : loop) mean += mesh.vertices[v];
+    mean /= static_cast<double>(loop.size());
+    Eigen::Vector3d in_cell =
+        mean / cell_size_ - Eigen::Vector3d(c.cell.place[0], c.cell.place[1], c.cell.place[2]);
+    for (int step = 0; step < 5; ++step) {
+      const FieldValue f = evaluate(c.cell, in_cell);
+      const double slope2 = f.gradient.squaredNorm();
+      if (!(slope2 > 0)) break;
+      const Eigen::Vector3d moved = in_cell - f.value / slope2 * f.gradient / cell_size_;
+      if (moved.minCoeff() < snap_guard || moved.maxCoeff() > 1 - snap_guard) break;
+      in_cell = moved;
+    }
+    return in_cube(c, in_cell);
+  }
+
+  void add_polygons(const CrossedCell& c, Mesh& mesh, std::vector<Triangle>& triangles) const {
+    std::uint32_t next_centre = c.first_vertex;
+    for (int axis = 0; axis < 3; ++axis) next_centre += owns_crossing(c, axis);
+    int at = 0;
+    for (int k = 0; k < c.polygons.loops; ++k) {
+      std::vector<std::uint32_t> loop;
+      for (int i = 0; i < c.polygons.sizes[k]; ++i) loop.push_back(vertex_of(c, c.polygons.edges[at++]));
+      if (needs_centre(c.polygons.sizes[k])) {
+        mesh.vertices[next_centre] = centre(c, mesh, loop);
+        for (std::size_t i = 0; i < loop.size(); ++i)
+          triangles.push_back({loop[i], loop[(i + 1) % loop.size()], next_centre});
+        ++next_centre;
+      } else {
+        fan(mesh, loop, triangles);
+      }
+    }
+  }
+
+  // A fan from the vertex with the shortest diagonals. Loops of up to five edges meet each face once,
+  // so no diagonal lies in a face, where a neighbour could have the same one.
+  void fan(const Mesh& mesh, const std::vector<std::uint32_t>& loop,
+           std::vector<Triangle>& triangles) const {
+    const std::size_t n = loop.size();
+    const auto vertex = [&](std::size_t i) -> const Eigen::Vector3d& {
+      return mesh.vertices[loop[i % n]];
+    };
+    std::size_t apex = 0;
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < n && n > 3; ++i) {
+      double diagonals = 0;
+      for (std::size_t j = 2; j + 1 < n; ++j) diagonals += (vertex(i + j) - vertex(i)).norm();
+      if (diagonals < best) {
+        best = diagonals;
+        apex = i;
+      }
+    }
+    for (std::size_t j = 1; j + 1 < n; ++j)
+      triangles.push_back({loop[apex], loop[(apex + j) % n], loop[(apex + j + 1) % n]});
+  }
+
+  double cell_size_;
+  std::vector<CrossedCell> cells_;
+  std::size_t vertices_ = 0;
+};
+
+}  // namespace
+
+Mesh zero_level_set(const SplineField& field, int depth) {
+  return Polygonizer(field, depth).mesh();
+}
+
+}  // namespace scan

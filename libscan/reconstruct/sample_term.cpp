@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/reconstruct/sample_term.h"
+
+#include <algorithm>
+
+#include "libscan/core/parallel.h"
+
+namespace scan {
+namespace {
+
+constexpr int cube_width = block_width + 2;  // functions that act on the cells of a block
+constexpr int cube_size = cube_width * cube_width * cube_width;
+constexpr std::size_t buckets_per_task = 4;
+
+struct CellWeights {
+  SplineWeights x, y, z;
+};
+
+CellWeights weights_at(const Eigen::Vector3d& in_cell) {
+  return {spline_weights(in_cell[0]), spline_weights(in_cell[1]), spline_weights(in_cell[2])};
+}
+
+struct ValueAndSlope {
+  double value = 0;
+  Eigen::Vector3d slope = Eigen::Vector3d::Zero();  // per cell width
+};
+
+ValueAndSlope evaluate(const double* cube, const CellWeights& w) {
+  ValueAndSlope f;
+  for (int c = 0; c < 3; ++c)
+    for (int b = 0; b < 3; ++b) {
+      const double* q = cube + cube_width * (b + cube_width * c);
+      const double value = w.x.value[0] * q[0] + w.x.value[1] * q[1] + w.x.value[2] * q[2];
+      const double slope = w.x.slope[0] * q[0] + w.x.slope[1] * q[1] + w.x.slope[2] * q[2];
+      f.value += w.y.value[b] * w.z.value[c] * value;
+      f.slope[0] += w.y.value[b] * w.z.value[c] * slope;
+      f.slope[1] += w.y.slope[b] * w.z.value[c] * value;
+      f.slope[2] += w.y.value[b] * w.z.slope[c] * value;
+    }
+  return f;
+}
+
+// Adds value * B + slope . grad B of the cell's 27 functions B (the transpose of evaluate).
+void accumulate(double* cube, const CellWeights& w, const ValueAndSlope& f) {
+  for (int c = 0; c < 3; ++c)
+    for (int b = 0; b < 3; ++b) {
+      double* q = cube + cube_width * (b + cube_width * c);
+      const double by_value = f.value * w.y.value[b] * w.z.value[c] +
+                              f.slope[1] * w.y.slope[b] * w.z.value[c] +
+                              f.slope[2] * w.y.value[b] * w.z.slope[c];
+      const double by_slope = f.slope[0] * w.y.value[b] * w.z.value[c];
+      for (int a = 0; a < 3; ++a) q[a] += by_value * w.x.value[a] + by_slope * w.x.slope[a];
+    }
+}
+
+}  // namespace
+
+SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
+                       std::span<const double> weight, std::span<const std::uint32_t> chosen,
+                       double value_weight, double gradient_weight)
+    : value_weight_(value_weight), gradient_weight_(gradient_weight), cells_(level.cells()) {
+  struct Address {
+    std::uint32_t block, cell, sample;
+    auto operator<=>(const Address&) const = default;
+  };
+  std::vector<Address> addresses(chosen.size());
+  const auto cell_along = [&](const Eigen::Vector3d& u, int a) { return cell_of(u[a], level.cells()); };
+  parallel_for(chosen.size(), [&](std::size_t i) {
+    const Eigen::Vector3d& u = samples.points[chosen[i]];
+    const BlockPlace cell = {cell_along(u, 0), cell_along(u, 1), cell_along(u, 2)};
+    const std::int32_t block = level.find_active({cell[0] / 4, cell[1] / 4, cell[2] / 4});
+    addresses[i] = {static_cast<std::uint32_t>(block),
+                    static_cast<std::uint32_t>(slot_in_block(cell[0] % 4, cell[1] % 4, cell[2] % 4)),
+                    chosen[i]};
+  });
+  std::sort(addresses.begin(), addresses.end());
+  bucket_of_block_.assign(level.blocks.size(), -1);
+  placed_.reserve(addresses.size());
+  for (const Address& at : addresses) {
+    if (bucket_block_.empty() || bucket_block_.back() != at.block) {
+      bucket_of_block_[at.block] = static_cast<std::int32_t>(bucket_block_.size());
+      bucket_block_.push_back(at.block);
+      bucket_begin_.push_back(static_cast<std::uint32_t>(placed_.size()));
+    }
+    const Eigen::Vector3d& u = samples.points[at.sample];
+    const Eigen::Vector3d cell(cell_along(u, 0), cell_along(u, 1), cell_along(u, 2));
+    const int x = at.cell % 4, y = at.cell / 4 % 4, z = at.cell / 16;
+    placed_.push_back({u * cells_ - cell, samples.normals[at.sample], weight[at.sample],
+                       x + cube_width * (y + cube_width * z)});
+  }
+  bucket_begin_.push_back(static_cast<std::uint32_t>(placed_.size()));
+}
+
+template <class Accumulate>
+void SampleTerm::scatter(const BlockLevel& level, std::vector<double>& sum,
+                         Accumulate&& accumulate_bucket) const {
+  const std::size_t buckets = bucket_block_.size();
+  if (buckets == 0) return;
+  std::vector<double> buffers(buckets * cube_size, 0.0);
+  parallel_for(
+      buckets, [&](std::size_t k) { accumulate_bucket(k, buffers.data() + k * cube_size); },
+      buckets_per_task);
+  parallel_for(level.blocks.size(), [&](std::size_t block) {
+    double* to = sum.data() + block * block_size;
+    // Cells of this block and of the lower neighbours reach its functions.
+    for (int dz = -1; dz <= 0; ++dz)
+      for (int dy = -1; dy <= 0; ++dy)
+        for (int dx = -1; dx <= 0; ++dx) {
+          const std::int32_t from = level.neighbours[block][neighbour_slot(dx, dy, dz)];
+          if (from < 0 || bucket_of_block_[from] < 0) continue;
+          const double* cube =
+              buffers.data() + static_cast<std::size_t>(bucket_of_block_[from]) * cube_size;
+          for (int z = 0; z < (dz < 0 ? 2 : 4); ++z)
+            for (int y = 0; y < (dy < 0 ? 2 : 4); ++y)
+              for (int x = 0; x < (dx < 0 ? 2 : 4); ++x)
+                to[slot_in_block(x, y, z)] +=
+                    cube[x - 4 * dx + cube_width * (y - 4 * dy + cube_width * (z - 4 * dz))];
+        }
+  });
+}
+
+void SampleTerm::add_product(const BlockLevel& level, const std::vector<double>& u,
+                             std::vector<double>& sum) const {
+  scatter(level, sum, [&](std::size_t bucket, double* buffer) {
+    double cube[cube_size];
+    gather(level, u, bucket_block_[bucket], 0, cube_width, cube);
+    for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
+      const Placed& sample = placed_[i];
+      const CellWeights w = weights_at(sample.in_cell);
+      ValueAndSlope f = evaluate(cube + sample.corner, w);
+      f.value *= sample.weight * value_weight_;
+      f.slope *= sample.weight * gradient_weight_ * cells_ * cells_;
+      accumulate(buffer + sample.corner, w, f);
+    }
+  });
+}
+
+void SampleTerm::add_right_side(const BlockLevel& level, std::vector<double>& sum) const {
+  scatter(level, sum, [&](std::size_t bucket, double* buffer) {
+    for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
+      const Placed& sample = placed_[i];
+      accumulate(buffer + sample.corner, weights_at(sample.in_cell),
+                 {0, sample.weight * gradient_weight_ * cells_ * sample.normal});
+    }
+  });
+}
+
+void SampleTerm::add_diagonal(const BlockLevel& level, std::vector<double>& sum) const {
+  const auto square = [](double x) { return x * x; };
+  scatter(level, sum, [&](std::size_t bucket, double* buffer) {
+    for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
+      const Placed& sample = placed_[i];
+      const CellWeights w = weights_at(sample.in_cell);
+      for (int c = 0; c < 3; ++c)
+        for (int b = 0; b < 3; ++b)
+          for (int a = 0; a < 3; ++a) {
+            const double value = square(w.x.value[a] * w.y.value[b] * w.z.value[c]);
+            const double slope = square(w.x.slope[a] * w.y.value[b] * w.z.value[c]) +
+                                 square(w.x.value[a] * w.y.slope[b] * w.z.value[c]) +
+                                 square(w.x.value[a] * w.y.value[b] * w.z.slope[c]);
+            buffer[sample.corner + a + cube_width * (b + cube_width * c)] +=
+                sample.weight *
+                (value_weight_ * value + gradient_weight_ * cells_ * cells_ * slope);
+          }
+    }
+  });
+}
+
+double SampleTerm::energy(const BlockLevel& level, const std::vector<double>& u) const {
+  double total = 0;
+  double cube[cube_size];
+  for (std::size_t bucket = 0; bucket < bucket_block_.size(); ++bucket) {
+    gather(level, u, bucket_block_[bucket], 0, cube_width, cube);
+    for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
+      const Placed& sample = placed_[i];
+      const ValueAndSlope f = evaluate(cube + sample.corner, weights_at(sample.in_cell));
+      total += sample.weight * (value_weight_ * f.value * f.value +
+                                gradient_weight_ * (cells_ * f.slope - sample.normal).squaredNorm());
+    }
+  }
+  return total;
+}
+
+}  // namespace scan

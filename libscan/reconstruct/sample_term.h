@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// The samples' part of the energy on one level: sum of a (v f^2 + g |grad f - n|^2).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "libscan/reconstruct/samples.h"
+#include "libscan/reconstruct/spline_levels.h"
+
+namespace scan {
+
+// Samples are kept by the block of their cell; each block's sums go to a buffer of its own, and the
+// blocks around fetch them from there, so nothing depends on the order of threads.
+class SampleTerm {
+ public:
+  SampleTerm() = default;
+  // `chosen`: indices of the samples on this level. `weight`: a of each sample of the cloud.
+  SampleTerm(const BlockLevel& level, const Samples& samples, std::span<const double> weight,
+             std::span<const std::uint32_t> chosen, double value_weight, double gradient_weight);
+
+  // sum += (matrix of the term) u, on all blocks; `u` holds all blocks.
+  void add_product(const BlockLevel& level, const std::vector<double>& u,
+                   std::vector<double>& sum) const;
+  // sum += g a grad B . n.
+  void add_right_side(const BlockLevel& level, std::vector<double>& sum) const;
+  // sum += diagonal of the matrix.
+  void add_diagonal(const BlockLevel& level, std::vector<double>& sum) const;
+  // The term's own value for u.
+  double energy(const BlockLevel& level, const std::vector<double>& u) const;
+
+ private:
+  struct Placed {
+    Eigen::Vector3d in_cell;  // coordinates in the cell, [0, 1]
+    Eigen::Vector3d normal;
+    double weight;
+    int corner;  // of the cell's functions in the block's cube
+  };
+  template <class Accumulate>
+  void scatter(const BlockLevel& level, std::vector<double>& sum, Accumulate&& accumulate) const;
+
+  double value_weight_ = 0;
+  double gradient_weight_ = 0;
+  double cells_ = 0;
+  std::vector<std::uint32_t> bucket_block_;  // per bucket: its block
+  std::vector<std::uint32_t> bucket_begin_;  // per bucket, and the end
+  std::vector<std::int32_t> bucket_of_block_;
+  std::vector<Placed> placed_;
+};
+
+}  // namespace scan

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Functions that are sums of B-splines on all levels of an octree, and how levels act together.
+//
+// Splines are nested: a coarse function is a sum of finer ones (the refinement mask). So the sum u of
+// a level's own coefficients and those of all coarser levels, written in that level's functions, is
+// all that the level's integrals and samples need.
+#pragma once
+
+#include <vector>
+
+#include "libscan/reconstruct/bspline.h"
+#include "libscan/reconstruct/octree_grid.h"
+
+namespace scan {
+
+// One array per level, block_size numbers per block: of all active blocks for unknowns, of all
+// blocks for sums.
+using LevelArrays = std::vector<std::vector<double>>;
+
+LevelArrays active_arrays(const OctreeGrid& grid, double value = 0);
+
+// Writes P coarse over `fine` (all blocks of level `l`): the same function in finer splines.
+void prolong(const OctreeGrid& grid, std::size_t l, const std::vector<double>& coarse,
+             std::vector<double>& fine);
+
+// Adds P^T fine to `coarse` (all blocks of level `l`; `fine` of level l+1).
+void restrict_add(const OctreeGrid& grid, std::size_t l, const std::vector<double>& fine,
+                  std::vector<double>& coarse);
+
+// Copies the functions 4*place-low ... of a block and its neighbours into a cube of `width` a side.
+// A block that is missing, or that lies behind the end of `values`, counts as zero.
+void gather(const BlockLevel& level, const std::vector<double>& values, std::size_t block, int low,
+            int width, double* cube);
+
+// integral of |D^2 f|^2 as a matrix of one level, for blocks `begin` ... `end`:
+// sum += factor * S values. `values` may hold active blocks only.
+class BendingStencil {
+ public:
+  explicit BendingStencil(int depth);
+  void add(const BlockLevel& level, const std::vector<double>& values, std::size_t block,
+           double factor, double* sum) const;
+  double diagonal(const BlockPlace& place, int slot) const;
+
+ private:
+  double inverse_cell_;
+  std::vector<StencilRow> rows_;
+};
+
+}  // namespace scan

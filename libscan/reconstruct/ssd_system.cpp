@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/reconstruct/ssd_system.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "libscan/core/parallel.h"
+
+namespace scan {
+
+SsdSystem::SsdSystem(const OctreeGrid& grid, const Samples& samples, std::vector<int> depths,
+                     const SsdWeights& weights)
+    : grid_(grid),
+      samples_(samples),
+      depths_(std::move(depths)),
+      weights_(weights),
+      area_(samples.area),
+      terms_(grid.levels.size()) {
+  const double total = std::accumulate(area_.begin(), area_.end(), 0.0);
+  for (double& a : area_) a /= total;
+  for (const BlockLevel& level : grid.levels) {
+    bending_.emplace_back(level.depth);
+    sums_.emplace_back(level.blocks.size() * block_size, 0.0);
+    residuals_.emplace_back(level.blocks.size() * block_size, 0.0);
+  }
+  use_levels(grid.levels.size() - 1);
+}
+
+void SsdSystem::use_levels(std::size_t finest) {
+  finest_ = finest;
+  std::vector<std::vector<std::uint32_t>> chosen(finest + 1);
+  for (std::uint32_t i = 0; i < depths_.size(); ++i)
+    chosen[std::min<std::size_t>(depths_[i], finest)].push_back(i);
+  for (std::size_t l = 0; l <= finest; ++l)
+    terms_[l] = SampleTerm(grid_.levels[l], samples_, area_, chosen[l], weights_.value,
+                           weights_.gradient);
+}
+
+void SsdSystem::accumulate_coarse_to_fine(const LevelArrays& x) {
+  for (std::size_t l = 0; l <= finest_; ++l) {
+    if (l > 0)
+      prolong(grid_, l, sums_[l - 1], sums_[l]);
+    else
+      std::fill(sums_[0].begin(), sums_[0].end(), 0.0);
+    for (std::size_t i = 0; i < x[l].size(); ++i) sums_[l][i] += x[l][i];
+  }
+}
+
+void SsdSystem::multiply(const LevelArrays& x, LevelArrays& y, bool with_samples) {
+  accumulate_coarse_to_fine(x);
+  for (std::size_t l = finest_ + 1; l-- > 0;) {
+    const BlockLevel& level = grid_.levels[l];
+    std::vector<double>& rest = residuals_[l];
+    std::fill(rest.begin(), rest.end(), 0.0);
+    if (l < finest_) restrict_add(grid_, l, residuals_[l + 1], rest);
+    if (with_samples) terms_[l].add_product(level, sums_[l], rest);
+    parallel_for(level.active, [&](std::size_t b) {
+      std::copy_n(rest.data() + b * block_size, block_size, y[l].data() + b * block_size);
+      bending_[l].add(level, sums_[l], b, weights_.smoothness, y[l].data() + b * block_size);
+    });
+    // Coarser levels have seen their own part of `sums_`: they lack what this level adds.
+    if (l > 0)
+      parallel_for(level.blocks.size(), [&](std::size_t b) {
+        bending_[l].add(level, x[l], b, weights_.smoothness, rest.data() + b * block_size);
+      });
+  }
+}
+
+LevelArrays SsdSystem::right_side() {
+  LevelArrays b = active_arrays(grid_);
+  for (std::size_t l = finest_ + 1; l-- > 0;) {
+    std::vector<double>& rest = residuals_[l];
+    std::fill(rest.begin(), rest.end(), 0.0);
+    if (l < finest_) restrict_add(grid_, l, residuals_[l + 1], rest);
+    terms_[l].add_right_side(grid_.levels[l], rest);
+    std::copy_n(rest.begin(), b[l].size(), b[l].begin());
+  }
+  return b;
+}
+
+LevelArrays SsdSystem::diagonal() const {
+  LevelArrays result = active_arrays(grid_);
+  for (std::size_t l = 0; l <= finest_; ++l) {
+    const BlockLevel& level = grid_.levels[l];
+    std::vector<std::uint32_t> chosen;  // a level's functions meet the samples of finer levels too
+    for (std::uint32_t i = 0; i < depths_.size(); ++i)
+      if (depths_[i] >= level.depth) chosen.push_back(i);
+    std::vector<double> sum(level.blocks.size() * block_size, 0.0);
+    SampleTerm(level, samples_, area_, chosen, weights_.value, weights_.gradient)
+        .add_diagonal(level, sum);
+    parallel_for(level.active, [&](std::size_t b) {
+      for (int slot = 0; slot < block_size; ++slot) {
+        const std::size_t i = b * block_size + slot;
+        const double entry = sum[i] + weights_.smoothness *
+                                          bending_[l].diagonal(level.blocks[b], slot);
+        result[l][i] = entry > 0 ? entry : 1;
+      }
+    });
+  }
+  return result;
+}
+
+double SsdSystem::energy(const LevelArrays& x) {
+  LevelArrays product = active_arrays(grid_);
+  multiply(x, product, false);  // leaves the sums behind
+  double total = 0;
+  for (std::size_t l = 0; l <= finest_; ++l) {
+    total += terms_[l].energy(grid_.levels[l], sums_[l]);
+    total += std::inner_product(x[l].begin(), x[l].end(), product[l].begin(), 0.0);
+  }
+  return total;
+}
+
+}  // namespace scan

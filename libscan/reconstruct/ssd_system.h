@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// The energy of SSD on the levels of an octree: matrix, right side, diagonal.
+#pragma once
+
+#include <vector>
+
+#include "libscan/reconstruct/sample_term.h"
+#include "libscan/reconstruct/spline_levels.h"
+
+namespace scan {
+
+struct SsdWeights {
+  double value = 0;
+  double gradient = 0;
+  double smoothness = 0;
+};
+
+// E(x) = sum_i a_i (value f(p_i)^2 + gradient |grad f(p_i) - n_i|^2) + smoothness integral |D^2 f|^2
+// with sum a_i = 1 (Calakli and Taubin 2011, eq. 3-5), f = sum of all levels' splines up to a finest
+// one. Half its gradient is A x - b. A is semidefinite: levels repeat each other's functions.
+class SsdSystem {
+ public:
+  // Keeps references: grid and samples must live as long.
+  SsdSystem(const OctreeGrid& grid, const Samples& samples, std::vector<int> depths,
+            const SsdWeights& weights);
+
+  // From now on only levels 0 ... `finest` act; deeper samples are seen by that level.
+  void use_levels(std::size_t finest);
+  std::size_t finest() const { return finest_; }
+
+  // y = A x; arrays of active blocks, as from active_arrays().
+  void multiply(const LevelArrays& x, LevelArrays& y) { multiply(x, y, true); }
+  LevelArrays right_side();
+  // Of A; 1 where a row is empty (functions outside the cube).
+  LevelArrays diagonal() const;
+  double energy(const LevelArrays& x);
+
+ private:
+  void multiply(const LevelArrays& x, LevelArrays& y, bool with_samples);
+  void accumulate_coarse_to_fine(const LevelArrays& x);
+
+  const OctreeGrid& grid_;
+  const Samples& samples_;
+  std::vector<int> depths_;
+  SsdWeights weights_;
+  std::vector<double> area_;
+  std::size_t finest_ = 0;
+  std::vector<BendingStencil> bending_;
+  std::vector<SampleTerm> terms_;
+  LevelArrays sums_;       // of x and all coarser levels, in each level's own functions
+  LevelArrays residuals_;  // what the finer levels and the samples put on a level
+};
+
+}  // namespace scan

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/reconstruct/support.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "libscan/core/parallel.h"
+#include "libscan/search/kd_tree.h"
+
+namespace scan {
+namespace {
+
+constexpr std::uint32_t none = 0xffffffffu;
+
+std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+}  // namespace
+
+std::vector<double> distance_to_points(const Mesh& mesh, std::span<const Eigen::Vector3d> points) {
+  const KdTree tree(points);
+  std::vector<double> distances(mesh.vertices.size());
+  parallel_for(distances.size(), [&](std::size_t i) {
+    distances[i] = std::sqrt(tree.nearest(mesh.vertices[i])->distance2_m2);
+  });
+  return distances;
+}
+
+std::vector<std::uint32_t> triangle_components(const Mesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  for (const Triangle& t : mesh.triangles)
+    for (int k = 1; k < 3; ++k) {
+      const std::uint32_t a = find_root(parent, t[0]), b = find_root(parent, t[k]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  std::vector<std::uint32_t> number(mesh.vertices.size(), none), components;
+  std::uint32_t count = 0;
+  for (const Triangle& t : mesh.triangles) {
+    std::uint32_t& of_root = number[find_root(parent, t[0])];
+    if (of_root == none) of_root = count++;
+    components.push_back(of_root);
+  }
+  return components;
+}
+
+Mesh kept_triangles(const Mesh& mesh, const std::vector<char>& keep,
+                    std::vector<std::uint32_t>& vertex_of) {
+  std::vector<std::uint32_t> renumbered(mesh.vertices.size(), none);
+  for (std::size_t t = 0; t < keep.size(); ++t)
+    if (keep[t])
+      for (const std::uint32_t v : mesh.triangles[t]) renumbered[v] = 0;
+  Mesh kept;
+  vertex_of.clear();
+  for (std::uint32_t v = 0; v < renumbered.size(); ++v)
+    if (renumbered[v] != none) {
+      renumbered[v] = static_cast<std::uint32_t>(kept.vertices.size());
+      kept.vertices.push_back(mesh.vertices[v]);
+      vertex_of.push_back(v);
+    }
+  for (std::size_t t = 0; t < keep.size(); ++t)
+    if (keep[t]) {
+      const Triangle& old = mesh.triangles[t];
+      kept.triangles.push_back({renumbered[old[0]], renumbered[old[1]], renumbered[old[2]]});
+    }
+  return kept;
+}
+
+Mesh supported_components(const Mesh& mesh, std::span<const Eigen::Vector3d> points,
+                          std::span<const double> weights, double least_share) {
+  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  if (component.empty()) return mesh;
+  const std::uint32_t count = *std::max_element(component.begin(), component.end()) + 1;
+  if (count == 1) return mesh;
+  std::vector<std::uint32_t> of_vertex(mesh.vertices.size());
+  for (std::size_t t = 0; t < component.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) of_vertex[v] = component[t];
+  const KdTree tree(mesh.vertices);
+  std::vector<std::uint32_t> nearest(points.size());
+  parallel_for(points.size(), [&](std::size_t i) { nearest[i] = tree.nearest(points[i])->index; });
+  std::vector<double> support(count, 0.0);
+  double total = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    support[of_vertex[nearest[i]]] += weights[i];
+    total += weights[i];
+  }
+  std::vector<char> keep(component.size());
+  for (std::size_t t = 0; t < keep.size(); ++t)
+    keep[t] = support[component[t]] >= least_share * total;
+  std::vector<std::uint32_t> vertex_of;
+  return kept_triangles(mesh, keep, vertex_of);
+}
+
+}  // namespace scan

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// How far a surface is from the data, and which of its parts data supports.
+#pragma once
+
+#include <span>
+
+#include "libscan/core/mesh.h"
+
+namespace scan {
+
+// Distance of each vertex to the nearest point.
+std::vector<double> distance_to_points(const Mesh& mesh, std::span<const Eigen::Vector3d> points);
+
+// Component of each triangle (connected by shared vertices), numbered by first appearance.
+std::vector<std::uint32_t> triangle_components(const Mesh& mesh);
+
+// The triangles that are kept and the vertices they use, both in their old order. `vertex_of` gets
+// the old index of each vertex.
+Mesh kept_triangles(const Mesh& mesh, const std::vector<char>& keep,
+                    std::vector<std::uint32_t>& vertex_of);
+
+// Without the components that are nearest to less than `least_share` of the points' weight.
+Mesh supported_components(const Mesh& mesh, std::span<const Eigen::Vector3d> points,
+                          std::span<const double> weights, double least_share);
+
+}  // namespace scan

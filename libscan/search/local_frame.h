@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Single-precision copies of points and queries, and how far they can be trusted: a search may pass
+// by a point only if its float distance exceeds what rounding can explain. Internal to
+// libscan/search.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libscan/search/neighbour_search.h"
+
+namespace scan {
+
+// A finite point of a cloud: its local coordinates and its index there.
+struct LocalPoint {
+  std::array<float, 3> at;
+  std::uint32_t index;
+};
+
+// Local coordinates u = (x - origin) * units_per_m; units_per_m is a power of two, so scaling is
+// exact, and the points of the cloud have |u| < 1 on each axis: neither their offset nor their
+// scale costs a bit.
+struct LocalFrame {
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  double units_per_m = 1;
+
+  std::array<float, 3> local(const Eigen::Vector3d& point_m) const;
+};
+
+// The frame of the finite points.
+LocalFrame local_frame(std::span<const Eigen::Vector3d> points_m);
+
+// The finite points in the frame.
+std::vector<LocalPoint> local_points(std::span<const Eigen::Vector3d> points_m,
+                                     const LocalFrame& frame);
+
+// A query in the frame.
+//
+// Let d be the true distance to a point in local units. Rounding both to float moves each by at
+// most 2^-24 of its largest coordinate on each axis, the query's being |q|: the distance d' of the
+// rounded ones obeys |d' - d| <= sqrt(3) 2^-24 (1 + |q|) < 2^-23 (1 + |q|) =: slack. The float
+// value of d'^2, of a sum of three squares of differences, is d'^2 (1 + t), |t| <= 6 * 2^-24. So a
+// point with d <= L has a float value of at most (L + slack)^2 (1 + 2^-20), rounding of this bound
+// and of the double values included. The same holds for the distance to a box of rounded points.
+struct LocalQuery {
+  LocalQuery(const LocalFrame& frame, const Eigen::Vector3d& query_m);
+
+  // The float value above which a squared distance in local units is certainly above limit2_m2.
+  float limit2(double limit2_m2) const {
+    if (!(limit2_m2 >= 0)) return -1;
+    const double limit = std::sqrt(limit2_m2) * units_per_m + slack;
+    const double bound = limit * limit * (1 + 0x1p-20);
+    constexpr double largest = std::numeric_limits<float>::max();
+    return bound < largest ? static_cast<float>(bound) : std::numeric_limits<float>::infinity();
+  }
+
+  Eigen::Vector3d at_m;
+  std::array<float, 3> at;
+  double units_per_m;
+  double slack;
+};
+
+}  // namespace scan

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/search/voxel_grid.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <unordered_map>
+
+#include "libscan/core/error.h"
+
+namespace scan {
+namespace {
+
+using Key = std::array<std::int64_t, 3>;
+
+struct KeyHash {
+  std::size_t operator()(const Key& key) const {
+    std::uint64_t hash = 0;
+    for (const std::int64_t k : key) {
+      // The finalizer of splitmix64 (Steele, Lea, Flood, OOPSLA 2014): every bit reaches every bit.
+      hash = (hash ^ static_cast<std::uint64_t>(k)) + 0x9e3779b97f4a7c15u;
+      hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
+      hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
+      hash ^= hash >> 31;
+    }
+    return hash;
+  }
+};
+
+void check_side(const Bounds& box, double side_m) {
+  if (!(side_m > 0))
+    throw Error(Trouble::usage, "voxel grid: side " + std::to_string(side_m) + " m, must be > 0");
+  if (!box.isEmpty() && !(box.sizes().maxCoeff() / side_m < 0x1p63))
+    throw Error(Trouble::usage, "voxel grid: more than 2^63 cubes along an axis",
+                "choose longer sides");
+}
+
+Key key_of(const Eigen::Vector3d& point, const Bounds& box, double side_m) {
+  Key key;
+  for (int axis = 0; axis < 3; ++axis)
+    key[axis] = static_cast<std::int64_t>(std::floor((point[axis] - box.min()[axis]) / side_m));
+  return key;
+}
+
+// The cube of each used point, numbered by first appearance.
+struct Cubes {
+  std::vector<std::uint32_t> points;  // that are used
+  std::vector<std::uint32_t> cube;    // of each of them
+  std::vector<double> count;          // points in each cube
+};
+
+Cubes assign_cubes(const PointCloud& cloud, const Bounds& box, double side_m) {
+  Cubes cubes{finite_points(cloud), {}, {}};
+  cubes.cube.reserve(cubes.points.size());
+  std::unordered_map<Key, std::uint32_t, KeyHash> numbers;
+  for (const std::uint32_t i : cubes.points) {
+    const auto next = static_cast<std::uint32_t>(numbers.size());
+    const auto [entry, is_new] = numbers.try_emplace(key_of(cloud.points[i], box, side_m), next);
+    if (is_new) cubes.count.push_back(0);
+    cubes.cube.push_back(entry->second);
+    cubes.count[entry->second] += 1;
+  }
+  return cubes;
+}
+
+// Mean per cube of values[i] - origin, plus origin: far from zero nothing is lost in the sum.
+template <class T>
+std::vector<T> means(const std::vector<T>& values, const Cubes& cubes, const T& zero,
+                     const T& origin) {
+  std::vector<T> mean;
+  if (values.empty()) return mean;
+  mean.assign(cubes.count.size(), zero);
+  for (std::size_t i = 0; i < cubes.points.size(); ++i)
+    mean[cubes.cube[i]] += values[cubes.points[i]] - origin;
+  for (std::size_t c = 0; c < mean.size(); ++c) mean[c] = origin + mean[c] / cubes.count[c];
+  return mean;
+}
+
+}  // namespace
+
+PointCloud voxel_grid(const PointCloud& cloud, double side_m) {
+  check(cloud);
+  const Bounds box = bounds_of(cloud.points);
+  check_side(box, side_m);
+  const Cubes cubes = assign_cubes(cloud, box, side_m);
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  const Eigen::Matrix3d no_covariance = Eigen::Matrix3d::Zero();
+  PointCloud thinned;
+  thinned.points = means(cloud.points, cubes, zero, box.min());
+  thinned.normals = means(cloud.normals, cubes, zero, zero);
+  thinned.sigma_m = means(cloud.sigma_m, cubes, 0.0, 0.0);
+  thinned.covariances = means(cloud.covariances, cubes, no_covariance, no_covariance);
+  thinned.intensity = means(cloud.intensity, cubes, 0.0, 0.0);
+  for (auto& normal : thinned.normals) normal.stableNormalize();  // (0,0,0), unknown, stays
+  return thinned;
+}
+
+}  // namespace scan

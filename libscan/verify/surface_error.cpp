@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Accuracy (measured to truth), completeness (truth to measured) and their F-score.
+#include "libscan/verify/surface_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "libscan/core/error.h"
+#include "libscan/core/parallel.h"
+#include "libscan/search/closest_point.h"
+#include "libscan/search/kd_tree.h"
+#include "libscan/verify/statistics.h"
+
+namespace scan {
+namespace {
+
+using DistanceTo = std::function<double(const Eigen::Vector3d&)>;
+
+// What is compared: points with normals (or none) that stand for the measured surface, and the
+// distance of any place to it.
+struct Measured {
+  std::vector<Eigen::Vector3d> points = {};
+  std::vector<Eigen::Vector3d> normals = {};  // (0,0,0): unknown
+  DistanceTo distance_m;
+  std::string over;  // what `points` are
+  Bounds bounds;
+};
+
+// Angle between two directions, accurate near 0 and pi as acos is not (Kahan 2006, section 12).
+double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+struct Accuracy {
+  std::vector<double> errors_m;
+  std::vector<double> normal_errors_rad;  // of the points with a known normal
+};
+
+Accuracy accuracy_of(const Measured& measured, const TrueSurface& truth) {
+  const TrueDistance distance(truth);
+  const std::size_t count = measured.points.size();
+  std::vector<double> errors_m(count), angles_rad(count);
+  parallel_for(count, [&](std::size_t i) {
+    const TrueDistance::Nearest nearest = distance.nearest(measured.points[i]);
+    errors_m[i] = std::abs(nearest.signed_distance_m);
+    if (!measured.normals.empty()) angles_rad[i] = angle_rad(measured.normals[i], nearest.normal);
+  });
+  Accuracy accuracy{std::move(errors_m), {}};
+  for (std::size_t i = 0; i < measured.normals.size(); ++i)
+    if (measured.normals[i].norm() > 0.5) accuracy.normal_errors_rad.push_back(angles_rad[i]);
+  return accuracy;
+}
+
+std::vector<SurfaceSample> seen_only(std::vector<SurfaceSample> samples,
+                                     const SurfaceErrorOptions& options) {
+  if (options.seen_points.empty()) return samples;
+  const KdTree seen(options.seen_points);
+  std::vector<char> unseen(samples.size());
+  parallel_for(samples.size(), [&](std::size_t i) {
+    unseen[i] = !seen.nearest(samples[i].point, options.seen_distance_m).has_value();
+  });
+  std::vector<SurfaceSample> kept;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (!unseen[i]) kept.push_back(samples[i]);
+  if (kept.empty())
+    throw Error(Trouble::computation, "completeness: no part of the true surface lies within " +
+                                          std::to_string(options.seen_distance_m) +
+                                          " m of a seen point");
+  return kept;
+}
+
+// Where planes are looked at: beside the bounded parts of the truth, where something was seen; with
+// neither, where something was measured.
+Bounds plane_region(const Measured& measured, const TrueSurface& truth,
+                    const SurfaceErrorOptions& options) {
+  if (!options.seen_points.empty()) return bounds_of(options.seen_points);
+  const bool any_bounded =
+      !truth.meshes.empty() ||
+      std::any_of(truth.shapes.begin(), truth.shapes.end(), [](const PlacedShape& shape) {
+        return bounds_of(shape).sizes().allFinite();
+      });
+  return any_bounded ? Bounds() : measured.bounds;
+}
+
+std::vector<double> completeness_of(const Measured& measured,
+                                    const std::vector<SurfaceSample>& samples) {
+  std::vector<double> errors_m(samples.size());
+  parallel_for(samples.size(),
+               [&](std::size_t i) { errors_m[i] = measured.distance_m(samples[i].point); });
+  return errors_m;
+}
+
+double share_within(const std::vector<double>& errors_m, double threshold_m) {
+  const auto within = std::count_if(errors_m.begin(), errors_m.end(),
+                                    [&](double error_m) { return error_m <= threshold_m; });
+  return static_cast<double>(within) / static_cast<double>(errors_m.size());
+}
+
+double default_threshold_m(const std::vector<SurfaceSample>& truth_samples) {
+  Bounds box;
+  for (const SurfaceSample& sample : truth_samples) box.extend(sample.point);
+  return box.diagonal().norm() / 100;
+}
+
+// Harmonic mean of precision and recall (Knapitsch et al. 2017, eq. 5).
+Measurement f_score(const std::vector<double>& accuracy_m, const std::vector<double>& completeness_m,
+                    double threshold_m) {
+  const double precision = share_within(accuracy_m, threshold_m);
+  const double recall = share_within(completeness_m, threshold_m);
+  const double sum = precision + recall;
+  return {.name = "f_score",
+          .value = sum > 0 ? 2 * precision * recall / sum : 0,
+          .unit = "1",
+          .over = "samples within " + std::to_string(threshold_m) + " m, both ways",
+          .count = accuracy_m.size() + completeness_m.size()};
+}
+
+std::vector<Measurement> compare(const Measured& measured, const TrueSurface& truth,
+                                 const SurfaceErrorOptions& options) {
+  const Accuracy accuracy = accuracy_of(measured, truth);
+  const auto truth_samples = sample_truth(truth, options.samples, options.seed + 1,
+                                          plane_region(measured, truth, options));
+  const double threshold_m = options.f_score_threshold_m > 0 ? options.f_score_threshold_m
+                                                             : default_threshold_m(truth_samples);
+  const auto completeness_m = completeness_of(measured, seen_only(truth_samples, options));
+
+  auto figures = summary("accuracy", accuracy.errors_m, "m", measured.over);
+  const auto other_way = summary("completeness", completeness_m, "m",
+                                 options.seen_points.empty()
+                                     ? "samples of the true surface, uniform by area"
+                                     : "samples of the true surface near seen points");
+  figures.insert(figures.end(), other_way.begin(), other_way.end());
+  figures.push_back(f_score(accuracy.errors_m, completeness_m, threshold_m));
+  if (!accuracy.normal_errors_rad.empty())
+    figures.push_back({.name = "normal_error_mean",
+                       .value = mean(accuracy.normal_errors_rad),
+                       .unit = "rad",
+                       .over = measured.over,
+                       .count = accuracy.normal_errors_rad.size()});
+  return figures;
+}
+
+void check_options(const SurfaceErrorOptions& options) {
+  if (options.samples == 0) throw Error(Trouble::usage, "surface error: samples is 0");
+  if (!options.seen_points.empty() && !(options.seen_distance_m > 0))
+    throw Error(Trouble::usage, "surface error: seen_distance_m is " +
+                                    std::to_string(options.seen_distance_m) +
+                                    ", must be positive when seen points are given");
+}
+
+}  // namespace
+
+std::vector<Measurement> surface_error(const Mesh& mesh, const TrueSurface& truth,
+                                       const SurfaceErrorOptions& options) {
+  check_options(options);
+  check(mesh);
+  if (mesh.empty()) throw Error(Trouble::input, "measured surface: no triangles");
+  const MeshSearch search(mesh);
+  Measured measured{.distance_m = [&](const Eigen::Vector3d& x) {
+                      return search.closest(x).distance_m;
+                    },
+                    .over = "samples of the measured surface, uniform by area",
+                    .bounds = bounds_of(mesh.vertices)};
+  for (const SurfaceSample& sample : sample_surface(mesh, options.samples, options.seed)) {
+    measured.points.push_back(sample.point);
+    measured.normals.push_back(sample.normal);
+  }
+  return compare(measured, truth, options);
+}
+
+std::vector<Measurement> cloud_error(const PointCloud& cloud, const TrueSurface& truth,
+                                     const SurfaceErrorOptions& options) {
+  check_options(options);
+  check(cloud);
+  const PointCloud finite = subset(cloud, finite_points(cloud));
+  if (finite.empty()) throw Error(Trouble::input, "measured cloud: no finite point");
+  const KdTree search(finite.points);
+  return compare({.points = finite.points,
+                  .normals = finite.normals,
+                  .distance_m =
+                      [&](const Eigen::Vector3d& x) {
+                        return std::sqrt(search.nearest(x)->distance2_m2);
+                      },
+                  .over = "measured points",
+                  .bounds = bounds_of(finite.points)},
+                 truth, options);
+}
+
+}  // namespace scan

@@ -1,0 +1,249 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/io/scan_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "libscan/io/ply.h"
+#include "tests/io/io_test_support.h"
+
+namespace scan {
+namespace {
+
+Eigen::Vector3d random_vector(RandomStream& random) {
+  const double x = random.normal(), y = random.normal();
+  return {x, y, random.normal()};
+}
+
+Scan full_scan() {
+  Scan scan;
+  scan.name = "full";
+  RandomStream random(5, 0, 0);
+  for (int i = 0; i < 200; ++i) {
+    scan.cloud.points.push_back(random_vector(random) * 1e6);
+    scan.cloud.normals.push_back(i % 9 == 0 ? Eigen::Vector3d(0, 0, 0)
+                                            : random_vector(random).normalized());
+    scan.cloud.sigma_m.push_back(std::abs(random.normal()) * 1e-5);
+    const Eigen::Vector3d v = random_vector(random);
+    scan.cloud.covariances.push_back(v * v.transpose());
+    scan.cloud.intensity.push_back(random.uniform());
+    scan.ray.push_back(static_cast<std::uint32_t>(i * 3));
+  }
+  scan.grid = {30, 20};
+  scan.misses = {{"no signal", 390}, {"out of range", 10}};
+  Vector6 twist;
+  twist << 0.3, -2, 1, 0.1, 1e3, 1e-9;
+  scan.world_from_scanner_guess = exp(twist);
+  return scan;
+}
+
+void expect_same_cloud(const PointCloud& a, const PointCloud& b) {
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.normals, b.normals);
+  EXPECT_EQ(a.sigma_m, b.sigma_m);
+  EXPECT_EQ(a.covariances, b.covariances);
+  EXPECT_EQ(a.intensity, b.intensity);
+}
+
+TEST(ScanFile, PlyBringsBackEverythingToTheBit) {
+  const TemporaryFolder folder;
+  const Scan scan = full_scan();
+  write_scan(folder / "full.ply", scan);
+  const Scan back = read_scan(folder / "full.ply");
+  EXPECT_EQ(back.name, scan.name);
+  expect_same_cloud(back.cloud, scan.cloud);
+  EXPECT_EQ(back.ray, scan.ray);
+  EXPECT_EQ(back.grid.rows, scan.grid.rows);
+  EXPECT_EQ(back.grid.columns, scan.grid.columns);
+  EXPECT_EQ(back.misses, scan.misses);
+  EXPECT_EQ(back.world_from_scanner_guess.matrix(), scan.world_from_scanner_guess.matrix());
+}
+
+TEST(ScanFile, PlyOfPointsAloneBringsBackPointsAlone) {
+  const TemporaryFolder folder;
+  Scan scan;
+  scan.cloud.points = {{1, 2, 3}, {-0.0, 0.1, 1e-300}};
+  write_scan(folder / "points.ply", scan);
+  const Scan back = read_scan(folder / "points.ply");
+  expect_same_cloud(back.cloud, scan.cloud);
+  EXPECT_TRUE(back.ray.empty());
+  EXPECT_TRUE(back.misses.empty());
+}
+
+TEST(ScanFile, PcdAndXyzBringBackPointsNormalsAndIntensityToTheBit) {
+  const TemporaryFolder folder;
+  Scan scan = full_scan();
+  scan.cloud.sigma_m.clear();
+  scan.cloud.covariances.clear();
+  for (const char* name : {"a.pcd", "a.xyz", "a.txt", "a.asc"}) {
+    write_scan(folder / name, scan);
+    expect_same_cloud(read_scan(folder / name).cloud, scan.cloud);
+  }
+}
+
+TEST(ScanFile, DropsAndCountsPointsThatAreNotFinite) {
+  const TemporaryFolder folder;
+  Scan scan = full_scan();
+  scan.cloud.points[3].y() = std::nan("");
+  scan.cloud.points[7].x() = std::numeric_limits<double>::infinity();
+  scan.cloud.normals[9].z() = std::nan("");  // the point stays, its normal becomes unknown
+  write_scan(folder / "holes.ply", scan);
+  const Scan back = read_scan(folder / "holes.ply");
+  ASSERT_EQ(back.cloud.size(), 198u);
+  EXPECT_EQ(back.misses.at("not finite"), 2u);
+  EXPECT_EQ(back.ray[3], scan.ray[4]);
+  EXPECT_EQ(back.ray[6], scan.ray[8]);
+  EXPECT_EQ(back.cloud.normals[7], Eigen::Vector3d(0, 0, 0));
+}
+
+TEST(ScanFile, RefusesFilesWithoutAValidPointAndUnknownEndings) {
+  const TemporaryFolder folder;
+  write_file(folder / "nan.xyz", "nan 0 0\n0 inf 0\n");
+  EXPECT_NE(error_of([&] { read_scan(folder / "nan.xyz"); }).find("holds no valid point"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_scan(folder / "missing.ply"); }).find("no such file"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_scan(folder / "a.doc"); }).find("'.doc'"), std::string::npos);
+  EXPECT_NE(error_of([&] { write_scan(folder / "a.doc", full_scan()); }, Trouble::output).find("'.doc'"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { write_scan(folder / "no" / "a.ply", full_scan()); }, Trouble::output)
+                .find("cannot be written"), std::string::npos);
+}
+
+TEST(ScanFile, RefusesUncertaintyThatIsNone) {
+  const TemporaryFolder folder;
+  Scan scan = full_scan();
+  scan.cloud.sigma_m[5] = -1;
+  write_scan(folder / "sigma.ply", scan);
+  EXPECT_NE(error_of([&] { read_scan(folder / "sigma.ply"); }).find("point 5: sigma_m is -1"), std::string::npos);
+}
+
+const std::string grid_head =
+    "ply\nformat ascii 1.0\nobj_info num_cols 3\nobj_info num_rows 2\nelement vertex 3\n"
+    "property float x\nproperty float y\nproperty float z\nelement range_grid 6\n"
+    "property list uchar int vertex_indices\nend_header\n0 0 1\n1 0 1\n2 0 1\n";
+
+TEST(RangeGrid, GivesEachVertexItsRay) {
+  const TemporaryFolder folder;
+  write_file(folder / "grid.ply", grid_head + "0\n1 1\n1 0\n0\n0\n1 2\n");
+  const Scan scan = read_scan(folder / "grid.ply");
+  EXPECT_EQ(scan.grid.rows, 2u);
+  EXPECT_EQ(scan.grid.columns, 3u);
+  EXPECT_EQ(scan.ray, (std::vector<std::uint32_t>{2, 1, 5}));
+  EXPECT_EQ(scan.misses.at("not recorded"), 3u);
+}
+
+TEST(RangeGrid, RefusesImpossibleCells) {
+  const TemporaryFolder folder;
+  const auto said = [&](const std::string& cells) {
+    write_file(folder / "grid.ply", grid_head + cells);
+    return error_of([&] { read_scan(folder / "grid.ply"); });
+  };
+  EXPECT_NE(said("0\n1 1\n1 0\n0\n0\n1 3\n").find("'range_grid', row 5: vertex 3, there are 3"), std::string::npos);
+  EXPECT_NE(said("0\n1 1\n1 1\n0\n0\n1 2\n").find("row 2: vertex 1 is named twice"), std::string::npos);
+  EXPECT_NE(said("0\n1 1\n2 0 1\n0\n0\n1 2\n").find("row 2: names more than one"), std::string::npos);
+}
+
+Mesh tetrahedron() {
+  return {{{0, 0, 0}, {1.0 / 3, 0, 1e6}, {0, 0.1, 0}, {0, 0, 1e-7}},
+          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+TEST(MeshFile, PlyObjAndOffBringBackDoublesToTheBit) {
+  const TemporaryFolder folder;
+  for (const char* name : {"t.ply", "t.obj", "t.off", "T.PLY"}) {
+    write_mesh(folder / name, tetrahedron());
+    const Mesh back = read_mesh(folder / name);
+    EXPECT_EQ(back.vertices, tetrahedron().vertices) << name;
+    EXPECT_EQ(back.triangles, tetrahedron().triangles) << name;
+    EXPECT_TRUE(holds_triangles(folder / name));
+  }
+}
+
+TEST(MeshFile, StlIsWeldedAndRoundsToFloat) {
+  const TemporaryFolder folder;
+  write_mesh(folder / "t.stl", tetrahedron());
+  const Mesh back = read_mesh(folder / "t.stl");
+  ASSERT_EQ(back.vertices.size(), 4u);
+  EXPECT_TRUE(edge_census(back).watertight);
+  for (std::size_t t = 0; t < 4; ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(back.vertices[back.triangles[t][k]],
+                tetrahedron().vertices[tetrahedron().triangles[t][k]].cast<float>().cast<double>());
+}
+
+TEST(MeshFile, PointsAloneAreNoMesh) {
+  const TemporaryFolder folder;
+  write_scan(folder / "points.ply", full_scan());
+  EXPECT_FALSE(holds_triangles(folder / "points.ply"));
+  EXPECT_FALSE(holds_triangles(folder / "points.xyz"));
+  EXPECT_NE(error_of([&] { read_mesh(folder / "points.ply"); }).find("holds no triangle"), std::string::npos);
+}
+
+TEST(RealData, TheTenBunnyScansHaveTheirPublishedPoints) {
+  const auto folder = outside_data() / "stanford-bunny" / "data";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the Stanford bunny is not in " << folder;
+  std::size_t points = 0;
+  for (const char* name : {"bun000", "bun045", "bun090", "bun180", "bun270", "bun315", "top2", "top3",
+                           "chin", "ear_back"}) {
+    const Scan scan = read_scan(folder / (std::string(name) + ".ply"));
+    EXPECT_EQ(scan.name, name);
+    EXPECT_EQ(scan.grid.rows, 400u);
+    EXPECT_EQ(scan.grid.columns, 512u);
+    EXPECT_EQ(scan.ray.size(), scan.cloud.size());
+    EXPECT_EQ(scan.cloud.size() + scan.misses.at("not recorded"), 204800u);
+    points += scan.cloud.size();
+  }
+  EXPECT_EQ(points, 362272u);  // the number that Stanford publishes
+}
+
+// Columns step 0.5 mm in x; other rows are shifted by half a column (the data's README): a ray index
+// that is one column or row off would break this.
+TEST(RealData, BunnyRaysFollowTheirColumns) {
+  const auto file = outside_data() / "stanford-bunny" / "data" / "bun000.ply";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the Stanford bunny is not at " << file;
+  const Scan scan = read_scan(file);
+  for (std::size_t i = 1; i < scan.cloud.size(); ++i) {
+    const std::uint32_t row = scan.ray[i] / 512, before = scan.ray[i - 1] / 512;
+    if (row != before) continue;
+    const double columns = static_cast<double>(scan.ray[i]) - scan.ray[i - 1];
+    // six digits in the file: 1e-7 m at 0.1 m
+    EXPECT_NEAR(scan.cloud.points[i].x() - scan.cloud.points[i - 1].x(), 0.0005 * columns, 2e-7);
+  }
+}
+
+TEST(RealData, MeshesHaveTheirKnownCounts) {
+  const auto data = outside_data();
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "the outside data is not in " << data;
+  const Mesh bunny = read_mesh(data / "stanford-bunny" / "reconstruction" / "bun_zipper.ply");
+  EXPECT_EQ(bunny.vertices.size(), 35947u);
+  EXPECT_EQ(bunny.triangles.size(), 69451u);
+  EXPECT_EQ(edge_census(bunny).boundary_edges, 223u);
+  const Mesh anchor = read_mesh(data / "reconbench" / "mesh" / "anchor.off");
+  EXPECT_EQ(anchor.vertices.size(), 49200u);
+  EXPECT_EQ(edge_census(anchor).genus, 4);
+  EXPECT_NEAR(volume_m3(anchor), 60350, 0.5);  // published to a whole number
+  const Mesh spot = read_mesh(data / "spot" / "spot_triangulated.obj");
+  EXPECT_EQ(spot.vertices.size(), 2930u);
+  EXPECT_EQ(spot.triangles.size(), 5856u);
+  EXPECT_TRUE(edge_census(spot).watertight);
+  EXPECT_GT(read_mesh(data / "cornell-box" / "cornell_box.obj").triangles.size(), 20u);
+}
+
+TEST(RealData, LidarAndSimulatedCloudsRead) {
+  const auto data = outside_data();
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "the outside data is not in " << data;
+  const Scan source = read_scan(data / "lidar-small_gicp" / "source.ply");
+  EXPECT_EQ(source.cloud.size(), 69792u);
+  EXPECT_EQ(source.cloud.intensity.size(), 69792u);
+  const Scan derived = read_scan(data / "reconbench" / "derived" / "anchor_mvs_full.ply");
+  const Scan original = read_scan(data / "reconbench" / "scan" / "anchor_mvs.npz");
+  ASSERT_EQ(derived.cloud.size(), 3000u);
+  ASSERT_EQ(original.cloud.size(), 3000u);
+  for (std::size_t i = 0; i < 3000; ++i)  // the derived file holds the same numbers as floats
+    EXPECT_EQ(derived.cloud.points[i].cast<float>(), original.cloud.points[i].cast<float>());
+}
+
+}  // namespace
+}  // namespace scan

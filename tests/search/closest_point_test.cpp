@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/search/closest_point.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "clouds.h"
+#include "libscan/core/error.h"
+
+namespace scan {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+struct Corners {
+  Eigen::Vector3d a, b, c;
+};
+
+// Smallest distance from x to a grid of points of the triangle: above the true one by at most the
+// grid's pitch.
+double sampled_distance(const Eigen::Vector3d& x, const Corners& t, int steps) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= steps; ++i)
+    for (int j = 0; i + j <= steps; ++j) {
+      const double v = double(i) / steps, w = double(j) / steps;
+      best = std::min(best, (t.a + v * (t.b - t.a) + w * (t.c - t.a) - x).norm());
+    }
+  return best;
+}
+
+// The conditions that mark the nearest point p of a convex set: no corner lies further towards x
+// than p, (corner - p) . (x - p) <= 0 (the variational inequality of the projection).
+double towards(const Eigen::Vector3d& x, const Eigen::Vector3d& p, const Corners& t) {
+  const Eigen::Vector3d direction = x - p;
+  return std::max({(t.a - p).dot(direction), (t.b - p).dot(direction), (t.c - p).dot(direction)});
+}
+
+TEST(ClosestPointOnTriangle, IsKnownInEachOfTheSevenRegions) {
+  const Eigen::Vector3d a(0, 0, 0), b(4, 0, 0), c(0, 4, 0);
+  const auto closest = [&](double x, double y) {
+    return closest_point_on_triangle({x, y, 3}, a, b, c);
+  };
+  EXPECT_EQ(closest(1, 1), Eigen::Vector3d(1, 1, 0));  // face
+  EXPECT_EQ(closest(-1, -2), a);                       // corners
+  EXPECT_EQ(closest(6, -1), b);
+  EXPECT_EQ(closest(-1, 6), c);
+  EXPECT_EQ(closest(1, -5), Eigen::Vector3d(1, 0, 0));  // edges
+  EXPECT_EQ(closest(-5, 3), Eigen::Vector3d(0, 3, 0));
+  EXPECT_EQ(closest(4, 4), Eigen::Vector3d(2, 2, 0));
+}
+
+TEST(ClosestPointOnTriangle, BeatsADenseSampling) {
+  RandomStream random(21, 0, 0);
+  for (int i = 0; i < 200; ++i) {
+    const Corners t{normal_vector(random), normal_vector(random), normal_vector(random)};
+    const Eigen::Vector3d x = 2 * normal_vector(random);
+    const double distance = (closest_point_on_triangle(x, t.a, t.b, t.c) - x).norm();
+    const double sampled = sampled_distance(x, t, 40);
+    const double pitch = ((t.b - t.a).norm() + (t.c - t.a).norm()) / 40;
+    EXPECT_LE(distance, sampled + 8 * epsilon);
+    EXPECT_GE(distance, sampled - pitch);
+  }
+}
+
+// For triangles from fat to a height of 1e-15 of their length, and any order of corners.
+TEST(ClosestPointOnTriangle, IsTheProjectionForFatAndForThinTriangles) {
+  RandomStream random(22, 0, 0);
+  for (int i = 0; i < 3000; ++i) {
+    const double height = std::pow(10.0, -15 * random.uniform());
+    const Eigen::Vector3d a = normal_vector(random), b = a + normal_vector(random);
+    const Eigen::Vector3d c = a + random.uniform() * (b - a) + height * normal_vector(random);
+    std::array<Eigen::Vector3d, 3> corner = {a, b, c};
+    std::rotate(corner.begin(), corner.begin() + i % 3, corner.end());
+    const Corners t{corner[0], corner[1], corner[2]};
+    const Eigen::Vector3d x = a + 2 * normal_vector(random);
+    const Eigen::Vector3d p = closest_point_on_triangle(x, t.a, t.b, t.c);
+    // A barycentric number is off by epsilon / 1e-3 at most where the foot is trusted alone
+    // (height over length 1e-3), and sizes here are below 10: 10 * 10 * 1e3 epsilon. Thinner ones
+    // may take an edge instead of the foot, when the two distances agree to rounding, and then the
+    // corner sticks out towards x by sqrt of that: the distances agree to 100 epsilon.
+    const double tolerance = 1e5 * epsilon + (height < 1e-2 ? 10 * std::sqrt(100 * epsilon) : 0);
+    EXPECT_LE(towards(x, p, t), tolerance) << "height " << height;
+  }
+}
+
+TEST(ClosestPointOnTriangle, TakesSegmentsAndPoints) {
+  const Eigen::Vector3d a(0, 0, 0), b(1, 0, 0), c(3, 0, 0), x(2, 5, 0);
+  for (const auto& [p, q, r] : {Corners{a, b, c}, Corners{c, b, a}, Corners{b, c, a}})
+    EXPECT_EQ(closest_point_on_triangle(x, p, q, r), Eigen::Vector3d(2, 0, 0));
+  EXPECT_EQ(closest_point_on_triangle(x, a, a, c), Eigen::Vector3d(2, 0, 0));
+  EXPECT_EQ(closest_point_on_triangle(x, a, c, c), Eigen::Vector3d(2, 0, 0));
+  EXPECT_EQ(closest_point_on_triangle(x, b, b, b), b);
+}
+
+TEST(ClosestPointOnTriangle, IsTheSameAtAnyScale) {
+  // Scaling by a power of two rounds nothing, so the answer scales to the bit.
+  RandomStream random(23, 0, 0);
+  for (const double scale : {0x1p-60, 0x1p60})
+    for (int i = 0; i < 100; ++i) {
+      const Corners t{normal_vector(random), normal_vector(random), normal_vector(random)};
+      const Eigen::Vector3d x = normal_vector(random);
+      const Eigen::Vector3d p = closest_point_on_triangle(x, t.a, t.b, t.c);
+      EXPECT_EQ(closest_point_on_triangle(scale * x, scale * t.a, scale * t.b, scale * t.c),
+                Eigen::Vector3d(scale * p));
+    }
+}
+
+Mesh triangle_soup(std::size_t count, double size, const Eigen::Vector3d& offset) {
+  RandomStream random(24, 0, 0);
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d place = offset + 3 * in_cube(random);
+    for (int j = 0; j < 3; ++j) mesh.vertices.push_back(place + size * normal_vector(random));
+    if (i % 5 == 1) mesh.vertices.back() = mesh.vertices[3 * i];              // a segment
+    if (i % 7 == 1) mesh.vertices[3 * i + 1] = mesh.vertices.back() = place;  // or less
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return mesh;
+}
+
+// A square of side `cells` in the plane z = 0, two triangles a cell, and all of it twice.
+Mesh doubled_plane(std::uint32_t cells) {
+  Mesh mesh;
+  for (std::uint32_t y = 0; y <= cells; ++y)
+    for (std::uint32_t x = 0; x <= cells; ++x) mesh.vertices.emplace_back(x, y, 0);
+  for (int copy = 0; copy < 2; ++copy)
+    for (std::uint32_t y = 0; y < cells; ++y)
+      for (std::uint32_t x = 0; x < cells; ++x) {
+        const std::uint32_t v = y * (cells + 1) + x;
+        mesh.triangles.push_back({v, v + 1, v + cells + 2});
+        mesh.triangles.push_back({v, v + cells + 2, v + cells + 1});
+      }
+  return mesh;
+}
+
+ClosestPoint by_brute_force(const Mesh& mesh, const Eigen::Vector3d& query) {
+  ClosestPoint best{query, 0, std::numeric_limits<double>::infinity()};
+  double best2 = best.distance_m;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    const Eigen::Vector3d p =
+        closest_point_on_triangle(query, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+    if ((p - query).squaredNorm() >= best2) continue;
+    best2 = (p - query).squaredNorm();
+    best = {p, i, std::sqrt(best2)};
+  }
+  return best;
+}
+
+void expect_brute_force(const Mesh& mesh, const Points& queries) {
+  const MeshSearch search(mesh);
+  for (const auto& query : queries) {
+    const ClosestPoint found = search.closest(query), expected = by_brute_force(mesh, query);
+    EXPECT_EQ(found.triangle, expected.triangle);
+    EXPECT_EQ(found.point, expected.point);
+    EXPECT_EQ(found.distance_m, expected.distance_m);
+  }
+}
+
+TEST(MeshSearch, AgreesWithBruteForceToTheBit) {
+  const Points queries = moved(uniform_cloud(300), 6, {-1, -1, -1});
+  for (const std::size_t count : {1, 2, 4, 5, 9, 1000})
+    expect_brute_force(triangle_soup(count, 0.1, {0, 0, 0}), queries);
+  expect_brute_force(triangle_soup(300, 5, {0, 0, 0}), queries);  // big ones, boxes that overlap
+}
+
+TEST(MeshSearch, AgreesWithBruteForceFarFromZero) {
+  const Eigen::Vector3d far(1e7, -1e7, 1e7);
+  expect_brute_force(triangle_soup(500, 0.1, far), moved(uniform_cloud(200), 4, far));
+  expect_brute_force(triangle_soup(500, 0.1, far), uniform_cloud(50));
+}
+
+TEST(MeshSearch, TakesTheLowestOfEquallyNearTriangles) {
+  const Mesh plane = doubled_plane(12);
+  Points queries;
+  for (double x = -1; x <= 13; x += 0.5)
+    for (double y = -1; y <= 13; y += 0.5) queries.emplace_back(x, y, 1.5);  // over corners, edges
+  expect_brute_force(plane, queries);
+}
+
+TEST(MeshSearch, BuildsTheSameInParallel) {
+  // More than the size from which the two halves are built at the same time.
+  expect_brute_force(triangle_soup(40000, 0.02, {0, 0, 0}), moved(uniform_cloud(20), 3, {0, 0, 0}));
+}
+
+TEST(MeshSearch, RefusesAMeshWithoutTriangles) {
+  EXPECT_THROW(MeshSearch(Mesh{}), Error);
+}
+
+}  // namespace
+}  // namespace scan

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Every kind of broken input gets one clear line, the documented exit code, and leaves nothing behind.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/tools/program.h"
+
+namespace scan::test {
+namespace {
+
+constexpr int usage = 2, input = 3, computation = 4, output = 5;
+
+// The last line of stderr is the error; there is exactly one such line, and no crash trace.
+void expect_failure(const Outcome& outcome, int code, const std::string& mentions) {
+  EXPECT_EQ(outcome.exit_code, code) << outcome.err;
+  std::size_t errors = 0;
+  std::istringstream lines(outcome.err);
+  std::string line, last;
+  while (std::getline(lines, line)) {
+    errors += line.rfind("error: ", 0) == 0;
+    last = line;
+  }
+  EXPECT_EQ(errors, 1u) << outcome.err;
+  EXPECT_EQ(last.rfind("error: ", 0), 0u) << outcome.err;
+  EXPECT_NE(last.find(mentions), std::string::npos) << "expected '" << mentions << "' in: " << last;
+}
+
+std::string ply_header(const std::string& vertices) {
+  return "ply\nformat ascii 1.0\nelement vertex " + vertices +
+         "\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
+}
+
+// A sphere's points with normals: good input for align and reconstruct.
+std::string sphere_ply(int count, double x_offset) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(count) +
+                     "\nproperty double x\nproperty double y\nproperty double z\nproperty double nx\n"
+                     "property double ny\nproperty double nz\nend_header\n";
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z), a = 2.399963 * i;
+    const double x = r * std::cos(a), y = r * std::sin(a);
+    char line[200];
+    std::snprintf(line, sizeof line, "%.17g %.17g %.17g %.17g %.17g %.17g\n", x + x_offset, y, z, x,
+                  y, z);
+    text += line;
+  }
+  return text;
+}
+
+struct BadFile {
+  std::string name;
+  std::string file;
+  std::string content;
+};
+
+std::vector<BadFile> bad_files() {
+  std::string garbage;
+  for (int i = 0; i < 4096; ++i) garbage += static_cast<char>((i * 7919 + 13) >> 3);
+  return {
+      {"empty", "a.ply", ""},
+      {"garbage", "a.ply", garbage},
+      {"not a PLY", "a.ply", "solid cube\nendsolid\n"},
+      {"no end of header", "a.ply", "ply\nformat ascii 1.0\nelement vertex 3\n"},
+      {"truncated", "a.ply", ply_header("3") + "0 0 0\n1 0 0\n"},
+      {"lying count", "a.ply", ply_header("1000000000000") + "0 0 0\n"},
+      {"negative count", "a.ply", ply_header("-1") + "0 0 0\n"},
+      {"zero points", "a.ply", ply_header("0")},
+      {"letters for numbers", "a.ply", ply_header("2") + "0 0 0\n1 zwei 0\n"},
+      {"only NaN", "a.ply", ply_header("2") + "nan nan nan\ninf 0 0\n"},
+      {"no coordinates", "a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 1\nproperty double u\nend_header\n0\n"},
+      {"empty XYZ", "a.xyz", ""},
+      {"letters in XYZ", "a.xyz", "0 0 0\n1 2 drei\n"},
+      {"garbage PCD", "a.pcd", garbage},
+      {"lying PCD", "a.pcd",
+       "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1000000000\nHEIGHT 1\n"
+       "POINTS 1000000000\nDATA binary\nxyz"},
+      {"garbage STL", "a.stl", garbage},
+      {"garbage OBJ", "a.obj", garbage},
+      {"unknown ending", "a.foo", "0 0 0\n"},
+  };
+}
+
+TEST(BadInput, BrokenFilesGetOneLineAndNothingIsWritten) {
+  for (const BadFile& bad : bad_files()) {
+    SCOPED_TRACE(bad.name);
+    const Folder folder;
+    const std::string file = (folder / bad.file).string();
+    spill(file, bad.content);
+    expect_failure(run_scan({"info", file}), input, bad.file);
+    expect_failure(run_scan({"reconstruct", file, (folder / "out.ply").string()}), input, bad.file);
+    expect_failure(run_scan({"align", file, file, (folder / "aligned").string()}), input, bad.file);
+    EXPECT_EQ(files_below(folder.path()), std::vector<std::string>{bad.file});
+  }
+}
+
+TEST(BadInput, MissingFilesAndFoldersAreNamed) {
+  const Folder folder;
+  const std::string missing = (folder / "missing.ply").string();
+  expect_failure(run_scan({"info", missing}), input, "missing.ply");
+  expect_failure(run_scan({"info", folder.path().string()}), input, folder.path().string());
+  expect_failure(run_scan({"run", (folder / "missing.json").string(), (folder / "run").string()}),
+                 input, "missing.json");
+  EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
+TEST(BadInput, OnePointIsTooFew) {
+  const Folder folder;
+  const std::string one = (folder / "one.ply").string();
+  spill(one, ply_header("1") + "0 0 0\n");
+  expect_failure(run_scan({"reconstruct", one, (folder / "out.ply").string()}), input, "point");
+  expect_failure(run_scan({"align", one, one, (folder / "aligned").string()}), computation,
+                 "alignment.json");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.ply"));
+}
+
+TEST(BadInput, ScansWithoutOverlapAreNotCalledAligned) {
+  const Folder folder;
+  const std::string a = (folder / "a.ply").string(), b = (folder / "b.ply").string();
+  spill(a, sphere_ply(500, 0));
+  spill(b, sphere_ply(500, 100));
+  const Outcome outcome = run_scan(
+      {"align", a, b, (folder / "aligned").string(), "--max-distance", "1cm", "--json"});
+  expect_failure(outcome, computation, "aligned");
+  EXPECT_NE(outcome.out.find("no correspondences"), std::string::npos) << outcome.out;
+}
+
+TEST(BadInput, OutputThatCannotBeWrittenIsFoundBeforeTheWork) {
+  const Folder folder;
+  const std::string points = (folder / "points.ply").string();
+  spill(points, sphere_ply(500, 0));
+  expect_failure(run_scan({"reconstruct", points, (folder / "no/such/folder.ply").string()}), output,
+                 "folder.ply");
+  expect_failure(run_scan({"reconstruct", points, folder.path().string()}), output,
+                 folder.path().string());
+  expect_failure(run_scan({"convert", points, "/proc/points.xyz"}), output, "/proc/points.xyz");
+}
+
+TEST(Usage, MistypedWordsGetAHint) {
+  expect_failure(run_scan({"recontruct"}), usage, "reconstruct");
+  expect_failure(run_scan({"reconstruct", "a.ply", "b.ply", "--deph", "8"}), usage, "--depth");
+  expect_failure(run_scan({"reconstruct", "a.ply", "b.ply", "--trim", "2furlongs"}), usage, "--trim");
+  expect_failure(run_scan({"reconstruct", "a.ply", "b.ply", "--depth", "99"}), usage, "99");
+  expect_failure(run_scan({"align", "a.ply", "b.ply", "--method", "magic"}), usage, "magic");
+  expect_failure(run_scan({}), usage, "scan --help");
+}
+
+TEST(Usage, HelpAndVersionSucceed) {
+  for (const char* command : {"run", "simulate", "acquire", "align", "reconstruct", "verify", "report",
+                              "info", "convert", "version"}) {
+    const Outcome outcome = run_scan({command, "--help"});
+    EXPECT_EQ(outcome.exit_code, 0) << command;
+    EXPECT_NE(outcome.out.find("Example:\n  scan " + std::string(command)), std::string::npos)
+        << outcome.out;
+  }
+  EXPECT_EQ(run_scan({"--help"}).exit_code, 0);
+  EXPECT_EQ(run_scan({"--version"}).out.rfind("scan ", 0), 0u);
+}
+
+}  // namespace
+}  // namespace scan::test

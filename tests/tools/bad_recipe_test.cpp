@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// A recipe with a slip in it is refused at once, with the place and a hint, and no run folder is made.
+#include <gtest/gtest.h>
+
+#include "tests/tools/program.h"
+
+namespace scan::test {
+namespace {
+
+const char* const good_recipe = R"({
+  "libscan": 1, "name": "small", "seed": 3,
+  "scene": {
+    "objects": [ { "shape": { "sphere": { "radius_mm": 25 } }, "material": "clay" } ],
+    "materials": { "clay": { "diffuse": 0.6 } } },
+  "scanner": { "phase_camera": {
+    "camera": { "width_px": 40, "height_px": 30, "focal_px": 60 },
+    "frequencies_mhz": [80], "max_range_m": 1.5 } },
+  "viewpoints": { "ring": { "count": 2, "radius_mm": 400 } },
+  "reconstruct": { "method": "ssd", "depth": 4 } })";
+
+struct Slip {
+  std::string from, to, mentions;
+};
+
+class BadRecipe : public testing::TestWithParam<Slip> {};
+
+TEST_P(BadRecipe, IsRefusedWithThePlace) {
+  const Slip& slip = GetParam();
+  std::string text = good_recipe;
+  const auto place = text.find(slip.from);
+  ASSERT_NE(place, std::string::npos) << slip.from;
+  text.replace(place, slip.from.size(), slip.to);
+  const Folder folder;
+  spill(folder / "recipe.json", text);
+  const Outcome outcome =
+      run_scan({"run", (folder / "recipe.json").string(), (folder / "run").string()});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_EQ(outcome.err.rfind("error: ", 0), 0u) << outcome.err;
+  EXPECT_NE(outcome.err.find("recipe.json"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(slip.mentions), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "run"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Slips, BadRecipe,
+    testing::Values(
+        Slip{"\"seed\"", "\"sede\"", "did you mean 'seed'"},
+        Slip{"radius_mm\": 25", "radius_inch\": 1", "radius"},
+        Slip{"radius_mm\": 25", "radius_mm\": -25", "must be positive"},
+        Slip{"radius_mm\": 25", "radius_mm\": \"25\"", "must be a number"},
+        Slip{"radius_mm\": 25", "radius_mm\": 25, \"radius_m\": 0.025", "two units"},
+        Slip{"{ \"sphere\": { \"radius_mm\": 25 } }", "\"brakcet\"", "did you mean 'bracket'"},
+        Slip{"\"shape\": { \"sphere\": { \"radius_mm\": 25 } }", "\"mesh\": \"gone.stl\", \"unit\": \"mm\"",
+             "gone.stl"},
+        Slip{"\"material\": \"clay\"", "\"material\": \"caly\"", "did you mean 'clay'"},
+        Slip{"phase_camera", "phase_camrea", "did you mean 'phase_camera'"},
+        Slip{"\"width_px\": 40", "\"width_px\": 0", "width_px"},
+        Slip{"\"width_px\": 40", "\"width_px\": 4.5", "whole number"},
+        Slip{"\"count\": 2", "\"count\": 0", "count"},
+        Slip{"\"depth\": 4", "\"depth\": 40", "depth"},
+        Slip{"\"method\": \"ssd\"", "\"method\": \"sdd\"", "did you mean 'ssd'"},
+        Slip{"\"libscan\": 1", "\"libscan\": 2", "version 1"},
+        Slip{"\"libscan\": 1,", "\"libscan\": 1", "not valid JSON"}));
+
+TEST(GoodRecipe, RunsAndRefusesToOverwrite) {
+  const Folder folder;
+  spill(folder / "recipe.json", good_recipe);
+  const std::string recipe = (folder / "recipe.json").string(), run = (folder / "run").string();
+  const Outcome first = run_scan({"run", recipe, run});
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  const auto files = files_below(run);
+  const Outcome second = run_scan({"run", recipe, run});
+  EXPECT_EQ(second.exit_code, 5) << second.err;
+  EXPECT_NE(second.err.find("--force"), std::string::npos) << second.err;
+  EXPECT_EQ(files_below(run), files);
+  EXPECT_EQ(run_scan({"run", recipe, run, "--resume"}).exit_code, 0);
+  EXPECT_EQ(run_scan({"run", recipe, run, "--force"}).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace scan::test

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Accuracy and completeness of squares and spheres whose errors are known in closed form.
+#include "libscan/verify/surface_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "libscan/core/error.h"
+#include "libscan/core/parallel.h"
+#include "tests/core/meshes.h"
+#include "tests/verify/figure.h"
+
+namespace scan {
+namespace {
+
+Mesh rectangle(double width, double height, double z) {
+  return {{{0, 0, z}, {width, 0, z}, {width, height, z}, {0, height, z}}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
+TrueSurface unit_square() { return {{}, {rectangle(1, 1, 0)}}; }
+
+TEST(SurfaceError, OfAShiftedSquareIsTheShift) {
+  const auto figures =
+      surface_error(rectangle(1, 1, 0.01), unit_square(),
+                    {.samples = 5000, .f_score_threshold_m = 0.011});
+  for (const char* name : {"accuracy_mean", "accuracy_rms", "accuracy_p95", "accuracy_max",
+                           "completeness_mean", "completeness_rms", "completeness_p95",
+                           "completeness_max"})
+    EXPECT_NEAR(figure(figures, name), 0.01, 1e-14) << name;
+  EXPECT_EQ(figure(figures, "f_score"), 1);
+  EXPECT_NEAR(figure(figures, "normal_error_mean"), 0, 1e-15);
+  const auto strict = surface_error(rectangle(1, 1, 0.01), unit_square(),
+                                    {.samples = 5000, .f_score_threshold_m = 0.009});
+  EXPECT_EQ(figure(strict, "f_score"), 0);
+}
+
+// Half of the square is missing: there the distance u is uniform in (0, 1/2), so the mean over all
+// is 1/8, the mean square 1/2 * 1/12 and the p95 0.45. Samples are stratified by triangle only, so
+// a binomial spread of 1 / sqrt(n) with five standard deviations.
+TEST(SurfaceError, OfAHalfMissingSquare) {
+  constexpr std::size_t n = 20'000;
+  const auto figures = surface_error(rectangle(0.5, 1, 0), unit_square(),
+                                     {.samples = n, .f_score_threshold_m = 0.1});
+  const double spread = 5 / std::sqrt(static_cast<double>(n));
+  EXPECT_NEAR(figure(figures, "accuracy_max"), 0, 1e-15);
+  EXPECT_NEAR(figure(figures, "completeness_mean"), 0.125, 0.17 * spread);
+  EXPECT_NEAR(figure(figures, "completeness_rms"), std::sqrt(1.0 / 24), 0.2 * spread);
+  EXPECT_NEAR(figure(figures, "completeness_p95"), 0.45, 0.22 * spread);
+  EXPECT_NEAR(figure(figures, "f_score"), 2 * 0.6 / 1.6, 0.5 * spread);
+  EXPECT_LE(figure(figures, "completeness_max"), 0.5);
+}
+
+TEST(SurfaceError, SeenPointsRestrictCompleteness) {
+  std::vector<Eigen::Vector3d> seen;
+  for (int i = 0; i <= 50; ++i)
+    for (int k = 0; k <= 100; ++k) seen.emplace_back(0.01 * i, 0.01 * k, 0);
+  const auto figures =
+      surface_error(rectangle(0.5, 1, 0), unit_square(),
+                    {.samples = 20'000, .seen_points = seen, .seen_distance_m = 0.02});
+  EXPECT_LE(figure(figures, "completeness_max"), 0.02);
+  EXPECT_LT(measurement(figures, "completeness_max").count, 10'700u);  // 0.52 of the square
+  EXPECT_GT(measurement(figures, "completeness_max").count, 9'900u);
+  const std::vector<Eigen::Vector3d> elsewhere{{9, 9, 9}};
+  EXPECT_THROW(surface_error(rectangle(1, 1, 0), unit_square(),
+                             {.samples = 10, .seen_points = elsewhere, .seen_distance_m = 0.1}),
+               Error);
+}
+
+TEST(SurfaceError, NormalErrorIsTheTilt) {
+  Vector6 turn = Vector6::Zero();
+  turn(0) = 0.2;
+  const Mesh tilted = transformed(exp(turn), rectangle(1, 1, 0));
+  EXPECT_NEAR(figure(surface_error(tilted, {{PlacedShape{Pose::Identity(), PlaneShape{}}}, {}},
+                                   {.samples = 1000}),
+                     "normal_error_mean"),
+              0.2, 1e-14);
+  Mesh flipped = rectangle(1, 1, 0);
+  for (Triangle& t : flipped.triangles) std::swap(t[0], t[1]);
+  EXPECT_NEAR(figure(surface_error(flipped, unit_square(), {.samples = 1000}), "normal_error_mean"),
+              std::numbers::pi, 1e-12);  // adding 1000 numbers rounds at 1000 * 3 * 2e-16
+}
+
+// The default threshold is a hundredth of the diagonal sqrt(2).
+TEST(SurfaceError, DefaultThresholdIsAHundredthOfTheDiagonal) {
+  const auto score = [](double shift_m) {
+    return figure(surface_error(rectangle(1, 1, shift_m), unit_square(), {.samples = 20'000}),
+                  "f_score");
+  };
+  EXPECT_EQ(score(0.0138), 1);
+  EXPECT_EQ(score(0.0142), 0);
+}
+
+TEST(CloudError, OfPointsAroundASphere) {
+  const TrueSurface sphere{{PlacedShape{Pose::Identity(), SphereShape{1}}}, {}};
+  PointCloud cloud;
+  for (int k = 0; k < 3; ++k)
+    for (const double side : {-1.0, 1.0}) {
+      cloud.points.push_back(side * 1.1 * Eigen::Vector3d::Unit(k));
+      cloud.normals.push_back(side * Eigen::Vector3d::Unit(k));
+    }
+  cloud.points.push_back({0, 0, 0.8});
+  cloud.normals.push_back({0, 0, 0});  // unknown
+  cloud.points.push_back(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  cloud.normals.push_back({0, 0, 1});
+  const auto figures = cloud_error(cloud, sphere, {.samples = 5000});
+  EXPECT_EQ(measurement(figures, "accuracy_mean").count, 7u);
+  EXPECT_NEAR(figure(figures, "accuracy_mean"), (6 * 0.1 + 0.2) / 7, 1e-15);
+  EXPECT_NEAR(figure(figures, "accuracy_max"), 0.2, 1e-15);
+  EXPECT_NEAR(figure(figures, "normal_error_mean"), 0, 1e-15);
+  EXPECT_EQ(measurement(figures, "normal_error_mean").count, 6u);
+  // farthest from six points on the axes is the diagonal direction: |d - 1.1 e| with d . e = 3^-1/2
+  EXPECT_NEAR(figure(figures, "completeness_max"), std::sqrt(1 + 1.21 - 2.2 / std::sqrt(3)), 0.02);
+}
+
+TEST(CloudError, WithoutNormalsSaysNothingOfThem) {
+  PointCloud cloud;
+  cloud.points = {{0, 0, 1}};
+  const TrueSurface sphere{{PlacedShape{Pose::Identity(), SphereShape{1}}}, {}};
+  EXPECT_THROW(figure(cloud_error(cloud, sphere, {.samples = 100}), "normal_error_mean"),
+               std::out_of_range);
+}
+
+TEST(SurfaceError, IsTheSameForAnyNumberOfThreads) {
+  const TrueSurface ring{{PlacedShape{Pose::Identity(), TorusShape{3, 1}}}, {}};
+  std::vector<Measurement> first;
+  for (const int threads : {1, 2, 7}) {
+    const ThreadLimit limit(threads);
+    const auto figures = surface_error(torus(3, 1, 30, 20), ring, {.samples = 5000});
+    if (threads == 1) first = figures;
+    for (std::size_t i = 0; i < figures.size(); ++i) EXPECT_EQ(figures[i].value, first[i].value);
+  }
+}
+
+// A grid of 60 x 40 inscribed in the torus: the sagitta of a chord that spans the angle a on a
+// circle of radius R is R (1 - cos(a/2)); errors of both directions add at most.
+TEST(SurfaceError, OfAFineTorusIsTheSagitta) {
+  const TrueSurface ring{{PlacedShape{Pose::Identity(), TorusShape{3, 1}}}, {}};
+  const auto figures = surface_error(torus(3, 1, 60, 40), ring, {.samples = 20'000});
+  const double pi = std::numbers::pi;
+  const double sagitta = 4 * (1 - std::cos(pi / 60)) + 1 - std::cos(pi / 40);
+  EXPECT_LE(figure(figures, "accuracy_max"), sagitta);
+  EXPECT_GT(figure(figures, "accuracy_max"), sagitta / 3);
+  EXPECT_LE(figure(figures, "completeness_max"), sagitta);
+}
+
+TEST(SurfaceError, RefusesNothing) {
+  EXPECT_THROW(surface_error(Mesh{}, unit_square()), Error);
+  EXPECT_THROW(cloud_error(PointCloud{}, unit_square()), Error);
+  EXPECT_THROW(surface_error(rectangle(1, 1, 0), TrueSurface{}), Error);
+  EXPECT_THROW(surface_error(rectangle(1, 1, 0), unit_square(), {.samples = 0}), Error);
+}
+
+}  // namespace
+}  // namespace scan

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// scan acquire: a device's raw data to points.
+#include "libscan/acquire/acquire.h"
+
+#include <nlohmann/json.hpp>
+
+#include "libscan/core/error.h"
+#include "libscan/io/image_file.h"
+#include "tools/json_output.h"
+#include "libscan/io/raw_files.h"
+#include "libscan/io/scan_file.h"
+#include "tools/commands.h"
+#include "tools/inputs.h"
+
+namespace scan {
+namespace {
+
+struct Arguments {
+  std::string device;
+  std::vector<std::string> paths;
+  std::string calibration;
+  std::string disparity;
+  std::string peak = "gaussian";
+  std::string pulse = "matched-filter";
+};
+
+AcquireOptions options_from(const Arguments& arguments) {
+  AcquireOptions options;
+  if (arguments.peak == "centroid") options.laser_line.peak = PeakMethod::centroid;
+  if (arguments.peak == "parabola") options.laser_line.peak = PeakMethod::parabola;
+  if (arguments.pulse == "leading-edge") options.waveform.pulse = PulseMethod::leading_edge;
+  if (arguments.pulse == "centroid") options.waveform.pulse = PulseMethod::centroid;
+  return options;
+}
+
+// Decodes; for stereo the disparity image is written beside if asked for.
+Scan decode(const Arguments& arguments, const RawFrames& frames) {
+  const AcquireOptions options = options_from(arguments);
+  const auto* pair = std::get_if<ImagePair>(&frames);
+  if (arguments.disparity.empty()) return acquire(frames, options);
+  if (!pair) throw Error(Trouble::usage, "--disparity goes with stereo");
+  const DisparityMap map = match(*pair, options.stereo);
+  Scan scan = points_from(map, pair->calibration);
+  estimate_normals(scan, options.normals);
+  write_pfm(arguments.disparity, map.disparity_px);
+  return scan;
+}
+
+int acquire_files(const Arguments& arguments, Console& console) {
+  const auto [inputs, output] = split_output(arguments.paths);
+  check_output(output);
+  const Stopwatch watch;
+  const RawFrames frames = read_raw_frames(
+      arguments.device, {inputs.begin(), inputs.end()}, arguments.calibration);
+  Scan scan = decode(arguments, frames);
+  console.time("acquire", watch.seconds());
+  if (scan.cloud.empty())
+    throw Error(Trouble::computation, output + ": no ray gave a point; nothing written");
+  write_scan(output, scan);
+  const auto summary = scan_json(output, scan);
+  console.say(output + ": " + std::to_string(scan.cloud.size()) + " points");
+  for (const auto& [reason, count] : scan.misses)
+    console.say("  " + std::to_string(count) + " rays without a point: " + reason);
+  console.finish("acquire", "ok", {{"device", arguments.device}, {"scans", {summary}}});
+  return 0;
+}
+
+}  // namespace
+
+Action acquire_command(CommandLine& line) {
+  auto arguments = std::make_shared<Arguments>();
+  line.choice("DEVICE", arguments->device, {"laser-line", "stereo", "phase", "waveform"},
+              "the kind of device");
+  line.inputs("INPUT... OUT", arguments->paths,
+              "raw files in order, or the folder that holds them; last the points to write");
+  line.option("--calibration", arguments->calibration,
+              "the device's calibration: JSON, or Middlebury's calib.txt");
+  line.option("--disparity", arguments->disparity, "stereo: also write the disparity (.pfm)");
+  line.choice("--peak", arguments->peak, {"centroid", "gaussian", "parabola"},
+              "laser-line: how the stripe's place is found");
+  line.choice("--pulse", arguments->pulse, {"leading-edge", "centroid", "matched-filter"},
+              "waveform: how the echo's time is found");
+  return [arguments](Console& console) { return acquire_files(*arguments, console); };
+}
+
+}  // namespace scan

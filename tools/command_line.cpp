@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "libscan/core/error.h"
+#include "libscan/core/parallel.h"
+#include "libscan/io/json_reader.h"
+#include "tools/version.h"
+
+namespace scan {
+namespace {
+
+struct LengthTarget {
+  std::string name;
+  std::shared_ptr<std::string> text;
+  double* value_m;
+};
+
+class CliCommandLine : public CommandLine {
+ public:
+  explicit CliCommandLine(CLI::App& app) : app_(app) {}
+
+  void input(std::string name, std::string& value, std::string help) override {
+    app_.add_option(name, value, help)->required();
+  }
+  void inputs(std::string name, std::vector<std::string>& values, std::string help) override {
+    app_.add_option(name, values, help)->required();
+  }
+  void option(std::string name, std::string& value, std::string help) override {
+    app_.add_option(name, value, help)->capture_default_str();
+  }
+  void choice(std::string name, std::string& value, std::vector<std::string> choices,
+              std::string help) override {
+    app_.add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
+  }
+  void whole(std::string name, long& value, long least, long most, std::string help) override {
+    app_.add_option(name, value, help)->check(CLI::Range(least, most))->capture_default_str();
+  }
+  void number(std::string name, double& value, double least, double most,
+              std::string help) override {
+    app_.add_option(name, value, help)->check(CLI::Range(least, most))->capture_default_str();
+  }
+  void length(std::string name, double& value_m, std::string help) override {
+    auto text = std::make_shared<std::string>();
+    app_.add_option(name, *text, help + " (2mm, 0.1m; a bare number is metres)");
+    lengths_.push_back({name, text, &value_m});
+  }
+  void flag(std::string name, bool& value, std::string help) override {
+    app_.add_flag(name, value, help);
+  }
+
+  void resolve_lengths() const {
+    for (const LengthTarget& target : lengths_)
+      if (!target.text->empty()) *target.value_m = parse_length_m(*target.text, target.name);
+  }
+
+ private:
+  CLI::App& app_;
+  std::vector<LengthTarget> lengths_;
+};
+
+struct Declared {
+  const Command* command;
+  CLI::App* app;
+  std::shared_ptr<CliCommandLine> line;
+  Action action;
+};
+
+void add_shared_options(CLI::App& app, Console& console) {
+  app.add_flag("--json", console.json, "print one JSON object on stdout");
+  app.add_flag("-q,--quiet", console.quiet, "no log on stderr");
+  app.add_flag("-v,--verbose", console.verbose, "more log on stderr");
+  app.add_option("--threads", console.threads, "threads to use (0: all cores)")
+      ->check(CLI::Range(0, 4096));
+}
+
+int report_error(const Console& console, const std::string& command, const Error& error) {
+  const int code = static_cast<int>(error.trouble());
+  const std::string hint = error.hint().empty() ? "" : " (" + error.hint() + ")";
+  std::fprintf(stderr, "error: %s%s\n", error.what(), hint.c_str());
+  nlohmann::ordered_json details = {{"code", code}, {"message", error.what()}};
+  if (!error.hint().empty()) details["hint"] = error.hint();
+  console.finish(command, "error", {{"error", details}});
+  return code;
+}
+
+std::string unknown_word_hint(const CLI::App& app, int argc, char** argv,
+                              const std::vector<Command>& commands) {
+  std::vector<std::string> words;
+  for (const Command& command : commands) words.push_back(command.name);
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
+    const std::string near = nearest_word(argv[1], words);
+    return near.empty() ? "run 'scan --help' for the list of commands"
+                        : "did you mean 'scan " + near + "'?";
+  }
+  std::vector<std::string> options;
+  for (const CLI::App* command : app.get_subcommands()) {
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    for (int i = 2; i < argc; ++i) {
+      const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+      if (word.rfind("--", 0) != 0) continue;
+      if (std::find(options.begin(), options.end(), word) != options.end()) continue;
+      if (const std::string near = nearest_word(word, options); !near.empty())
+        return "did you mean '" + near + "'?";
+    }
+    return "run 'scan " + command->get_name() + " --help'";
+  }
+  return "run 'scan --help'";
+}
+
+std::string usage_message(const CLI::App& app, const CLI::ParseError& error, int argc,
+                          char** argv) {
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty())
+    return "unknown command '" + std::string(argv[1]) + "'";
+  std::string message = error.what();
+  for (char& c : message)
+    if (c == '\n') c = ' ';
+  return message;
+}
+
+int run_action(const Declared& declared, Console& console) {
+  const std::string& name = declared.command->name;
+  try {
+    declared.line->resolve_lengths();
+    const ThreadLimit limit(console.threads);
+    return declared.action(console);
+  } catch (const Error& error) {
+    return report_error(console, name, error);
+  } catch (const Interrupted&) {
+    std::fprintf(stderr, "error: interrupted\n");
+    return 130;
+  } catch (const std::bad_alloc&) {
+    return report_error(console, name, Error(Trouble::resource, "out of memory"));
+  } catch (const std::exception& error) {
+    return report_error(console, name, Error(Trouble::computation, error.what()));
+  }
+}
+
+}  // namespace
+
+double parse_length_m(const std::string& text, const std::string& option) {
+  static const std::map<std::string, double> units = {
+      {"", 1}, {"m", 1}, {"mm", 1e-3}, {"um", 1e-6}, {"cm", 1e-2}, {"km", 1e3}};
+  std::size_t end = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    end = 0;
+  }
+  const auto unit = units.find(text.substr(end));
+  if (end == 0 || unit == units.end() || !std::isfinite(value) || value < 0)
+    throw Error(Trouble::usage, option + ": '" + text +
+                                    "' is not a length, such as 2mm, 0.1m or 50um");
+  return value * unit->second;
+}
+
+int run_program(int argc, char** argv, const std::vector<Command>& commands) {
+  Console console;
+  CLI::App app("libscan " + version_text() +
+                   ": from a scanner's raw data to a verified surface, real or simulated",
+               "scan");
+  app.set_version_flag("--version", "scan " + version_text());
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  std::vector<Declared> declared;
+  for (const Command& command : commands) {
+    CLI::App* sub = app.add_subcommand(command.name, command.summary);
+    sub->footer("Example:\n  " + command.example);
+    auto line = std::make_shared<CliCommandLine>(*sub);
+    Action action = command.declare(*line);
+    add_shared_options(*sub, console);
+    declared.push_back({&command, sub, line, std::move(action)});
+  }
+  app.footer("Run 'scan COMMAND --help' for a command's arguments and an example.\n"
+             "Exit codes: 0 ok; 1 verification failed; 2 usage; 3 input; 4 computation;\n"
+             "5 output; 6 resource limit; 130 interrupted.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);  // help and version
+  } catch (const CLI::ParseError& error) {
+    return report_error(console, "scan",
+                        Error(Trouble::usage, usage_message(app, error, argc, argv),
+                              unknown_word_hint(app, argc, argv, commands)));
+  }
+  watch_for_interrupt();
+  for (const Declared& entry : declared)
+    if (entry.app->parsed()) return run_action(entry, console);
+  return static_cast<int>(Trouble::usage);
+}
+
+}  // namespace scan

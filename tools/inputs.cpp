@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/inputs.h"
+
+#include <filesystem>
+
+#include "libscan/core/error.h"
+#include "libscan/io/scan_file.h"
+
+namespace scan {
+
+std::pair<std::vector<std::string>, std::string> split_output(std::vector<std::string> paths) {
+  if (paths.size() < 2)
+    throw Error(Trouble::usage, "needs at least one input and, last, the output");
+  std::string output = std::move(paths.back());
+  paths.pop_back();
+  return {std::move(paths), std::move(output)};
+}
+
+void check_output(const std::string& path) {
+  if (std::filesystem::is_directory(path))
+    throw Error(Trouble::output, path + ": is a folder, the output must be a file");
+  const auto folder = std::filesystem::absolute(path).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    throw Error(Trouble::output, path + ": folder " + folder.string() + " does not exist");
+}
+
+std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths,
+                                          Console& console) {
+  std::vector<Scan> scans;
+  for (const std::string& path : paths) {
+    scans.push_back(read_scan(path));
+    Scan& scan = scans.back();
+    if (const auto bad = scan.misses.find("not finite"); bad != scan.misses.end())
+      console.warn(path + ": " + std::to_string(bad->second) + " points are not finite, left out");
+    if (!scan.cloud.normals.empty()) continue;
+    console.detail(path + ": has no normals; estimated from neighbouring points");
+    estimate_normals(scan);
+  }
+  return scans;
+}
+
+PointCloud joined(const std::vector<Scan>& scans, const std::vector<Pose>& world_from_scan) {
+  PointCloud all = transformed(world_from_scan.front(), scans.front().cloud);
+  for (std::size_t i = 1; i < scans.size(); ++i)
+    append(all, transformed(world_from_scan[i], scans[i].cloud));
+  return all;
+}
+
+}  // namespace scan

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Files that commands take, read and made ready.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libscan/acquire/normals.h"
+#include "libscan/core/scan.h"
+#include "tools/console.h"
+
+namespace scan {
+
+// Splits INPUT... OUT; scan::Error (usage) if there are not at least one input and the output.
+std::pair<std::vector<std::string>, std::string> split_output(std::vector<std::string> paths);
+
+// scan::Error (output) if `path` is a folder or its folder does not exist, before long work starts.
+void check_output(const std::string& path);
+
+// Reads scans; those without normals get them by plane fits, facing their viewpoint.
+std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths, Console& console);
+
+// The scans' points in one cloud, world frame.
+PointCloud joined(const std::vector<Scan>& scans, const std::vector<Pose>& world_from_scan);
+
+}  // namespace scan

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/recipe_scene.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "libscan/core/error.h"
+#include "libscan/io/scan_file.h"
+#include "libscan/io/shape_json.h"
+
+namespace scan {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Our own models by name.
+const std::map<std::string, Shape (*)()> models = {{"bracket", synth::bracket},
+                                                          {"bud", synth::bud}};
+const std::map<std::string, double> mesh_units = {{"m", 1}, {"mm", 1e-3}, {"um", 1e-6}};
+
+template <class Map>
+std::vector<std::string> keys_of(const Map& map) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : map) keys.push_back(key);
+  return keys;
+}
+
+// The entry of `map` that `word` names, or an error at `reader`/`key` that lists them.
+template <class Map>
+const typename Map::mapped_type& look_up(const Map& map, const std::string& word,
+                                         const JsonReader& reader, std::string_view key) {
+  const auto found = map.find(word);
+  if (found != map.end()) return found->second;
+  std::string known;
+  for (const std::string& name : keys_of(map)) known += (known.empty() ? "" : ", ") + name;
+  const std::string near = nearest_word(word, keys_of(map));
+  throw Error(Trouble::input,
+              reader.place() + "/" + std::string(key) + ": '" + word + "' is none of " + known,
+              near.empty() ? "" : "did you mean '" + near + "'?");
+}
+
+synth::Texture read_texture(JsonReader reader) {
+  if (reader.has("checker")) {
+    JsonReader inner = reader.object("checker");
+    synth::CheckerTexture checker;
+    checker.period_m = inner.length_m("period", checker.period_m);
+    checker.contrast = inner.number("contrast", checker.contrast);
+    inner.finish();
+    reader.finish();
+    return checker;
+  }
+  JsonReader inner = reader.object("noise");
+  synth::NoiseTexture noise;
+  noise.period_m = inner.length_m("period", noise.period_m);
+  noise.octaves = static_cast<int>(inner.integer("octaves", noise.octaves));
+  noise.contrast = inner.number("contrast", noise.contrast);
+  inner.finish();
+  reader.finish();
+  return noise;
+}
+
+synth::Material read_material(JsonReader reader, const std::string& name) {
+  synth::Material material{.name = name};
+  material.albedo = reader.number("diffuse", material.albedo);
+  if (reader.has("texture")) material.texture = read_texture(reader.object("texture"));
+  reader.finish();
+  return material;
+}
+
+Shape read_object_shape(JsonReader& reader) {
+  if (reader.value("shape").is_string())
+    return look_up(models, reader.text("shape"), reader, "shape")();
+  JsonReader inner = reader.object("shape");
+  Shape shape = read_shape(inner);
+  inner.finish();
+  return shape;
+}
+
+void read_object(JsonReader reader, const std::map<std::string, int>& materials,
+                 const std::filesystem::path& folder, RecipeScene& scene) {
+  synth::Object object;
+  std::filesystem::path file;
+  double unit_m = 1;
+  if (reader.has("mesh")) {
+    if (reader.has("shape")) reader.fail("mesh", "stands beside a shape; an object has one of them");
+    file = std::filesystem::absolute(folder / reader.text("mesh")).lexically_normal();
+    unit_m = look_up(mesh_units, reader.text("unit"), reader, "unit");
+    Mesh mesh = read_mesh(file);
+    for (auto& vertex : mesh.vertices) vertex *= unit_m;
+    object.geometry = std::move(mesh);
+  } else {
+    object.geometry = read_object_shape(reader);
+  }
+  object.name = reader.text("name", "object " + std::to_string(scene.scene.objects.size()));
+  object.world_from_object = reader.has("world_from_object")
+                                 ? pose_from_json(reader.value("world_from_object"),
+                                                  reader.place() + "/world_from_object")
+                                 : reader.placement();
+  object.material = look_up(materials, reader.text("material"), reader, "material");
+  reader.finish();
+  scene.scene.objects.push_back(std::move(object));
+  scene.mesh_files.push_back(file);
+  scene.mesh_units_m.push_back(unit_m);
+}
+
+struct TextureWriter {
+  ordered_json operator()(const synth::PlainTexture&) const { return nullptr; }
+  ordered_json operator()(const synth::CheckerTexture& t) const {
+    return {{"checker", {{"period_m", t.period_m}, {"contrast", t.contrast}}}};
+  }
+  ordered_json operator()(const synth::NoiseTexture& t) const {
+    return {{"noise",
+             {{"period_m", t.period_m}, {"octaves", t.octaves}, {"contrast", t.contrast}}}};
+  }
+};
+
+std::string unit_name(double unit_m) {
+  for (const auto& [name, value] : mesh_units)
+    if (value == unit_m) return name;
+  return "m";
+}
+
+}  // namespace
+
+RecipeScene read_scene(JsonReader reader, const std::filesystem::path& folder) {
+  RecipeScene scene;
+  std::map<std::string, int> materials;
+  JsonReader list = reader.object("materials");
+  for (const std::string& name : list.keys()) {
+    materials[name] = static_cast<int>(scene.scene.materials.size());
+    scene.scene.materials.push_back(read_material(list.object(name), name));
+  }
+  for (JsonReader& object : reader.objects("objects"))
+    read_object(std::move(object), materials, folder, scene);
+  reader.finish();
+  check(scene.scene);
+  return scene;
+}
+
+ordered_json to_json(const RecipeScene& recipe) {
+  ordered_json materials = ordered_json::object(), objects = ordered_json::array();
+  for (const synth::Material& material : recipe.scene.materials) {
+    ordered_json entry = {{"diffuse", material.albedo}};
+    if (auto texture = std::visit(TextureWriter{}, material.texture); !texture.is_null())
+      entry["texture"] = std::move(texture);
+    materials[material.name] = std::move(entry);
+  }
+  for (std::size_t i = 0; i < recipe.scene.objects.size(); ++i) {
+    const synth::Object& object = recipe.scene.objects[i];
+    ordered_json entry = {{"name", object.name}};
+    if (const Shape* shape = std::get_if<Shape>(&object.geometry)) {
+      entry["shape"] = to_json(*shape);
+    } else {
+      entry["mesh"] = recipe.mesh_files[i].string();
+      entry["unit"] = unit_name(recipe.mesh_units_m[i]);
+    }
+    entry["material"] = recipe.scene.materials[static_cast<std::size_t>(object.material)].name;
+    entry["world_from_object"] = to_json(object.world_from_object);
+    objects.push_back(std::move(entry));
+  }
+  return {{"objects", objects}, {"materials", materials}};
+}
+
+}  // namespace scan

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// The keys of a recipe's scene.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "libscan/io/json_reader.h"
+#include "synth/scene.h"
+
+namespace scan {
+
+// `mesh_files[i]` is the file of object i, empty for an analytic shape; `mesh_units_m[i]` its unit.
+struct RecipeScene {
+  synth::Scene scene;
+  std::vector<std::filesystem::path> mesh_files;
+  std::vector<double> mesh_units_m;
+};
+
+// Mesh files are relative to `folder`.
+RecipeScene read_scene(JsonReader reader, const std::filesystem::path& folder);
+nlohmann::ordered_json to_json(const RecipeScene& scene);
+
+}  // namespace scan

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// scan reconstruct: oriented points to a surface.
+#include <nlohmann/json.hpp>
+
+#include "libscan/core/error.h"
+#include "tools/json_output.h"
+#include "libscan/io/poses.h"
+#include "libscan/io/scan_file.h"
+#include "tools/commands.h"
+#include "tools/inputs.h"
+#include "tools/surface_stage.h"
+
+namespace scan {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> paths;
+  std::string method = "ssd";
+  std::string poses;
+  long depth = SsdOptions{}.depth;
+  double trim_m = 0;
+  double thin_m = 0;
+};
+
+int reconstruct_files(const Arguments& arguments, Console& console) {
+  const auto [inputs, output] = split_output(arguments.paths);
+  check_output(output);
+  const auto scans = read_scans_with_normals(inputs, console);
+  std::vector<Pose> poses(scans.size(), Pose::Identity());
+  if (!arguments.poses.empty()) {
+    const auto named = read_poses(arguments.poses);
+    if (named.size() != scans.size())
+      throw Error(Trouble::input, arguments.poses + ": has " + std::to_string(named.size()) +
+                                      " poses for " + std::to_string(scans.size()) + " scans");
+    for (std::size_t i = 0; i < scans.size(); ++i) poses[i] = named[i].pose;
+  }
+  ReconstructSettings settings;
+  settings.method =
+      arguments.method == "ssd" ? ReconstructMethod::ssd : ReconstructMethod::delaunay;
+  settings.ssd.depth = static_cast<int>(arguments.depth);
+  settings.trim_m = arguments.trim_m;
+  settings.thin_m = arguments.thin_m;
+
+  const SurfaceResult result = make_surface(joined(scans, poses), settings, console);
+  write_mesh(output, result.surface);
+  const auto json = surface_json(result, arguments.method, settings.ssd.depth);
+  console.say(output + ": " + std::to_string(result.surface.vertices.size()) + " vertices, " +
+              std::to_string(result.surface.triangles.size()) + " triangles, " +
+              std::to_string(json.at("components").get<int>()) + " components, " +
+              (json.at("watertight").get<bool>() ? "watertight" : "not closed"));
+  console.finish("reconstruct", "ok", json);
+  return 0;
+}
+
+}  // namespace
+
+Action reconstruct_command(CommandLine& line) {
+  auto arguments = std::make_shared<Arguments>();
+  line.inputs("INPUT... OUT", arguments->paths, "points with normals; last the mesh to write");
+  line.choice("--method", arguments->method, {"ssd", "delaunay"}, "how the surface is made");
+  line.whole("--depth", arguments->depth, 3, 12, "ssd: octree depth; the box is 2^depth cells");
+  line.option("--poses", arguments->poses, "a pose for each input, in their order");
+  line.length("--trim", arguments->trim_m, "remove surface farther than this from every point");
+  line.length("--thin", arguments->thin_m, "first thin the points to one per cube of this side");
+  return [arguments](Console& console) { return reconstruct_files(*arguments, console); };
+}
+
+}  // namespace scan

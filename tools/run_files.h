@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Where things lie in a run folder, and how they are read back.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "libscan/core/scan.h"
+
+namespace scan {
+
+// "000", "001", ...: a scan's name by its index.
+std::string scan_name(std::size_t index);
+
+std::filesystem::path recipe_path(const std::filesystem::path& run);
+std::filesystem::path scan_path(const std::filesystem::path& run, std::size_t index);
+std::filesystem::path raw_path(const std::filesystem::path& run, std::size_t index);
+std::filesystem::path truth_path(const std::filesystem::path& run);
+
+// All scans in scans/, in their order. scan::Error (input) if there are none.
+std::vector<Scan> read_run_scans(const std::filesystem::path& run);
+
+// The poses in poses.tum, one per scan.
+std::vector<Pose> read_run_poses(const std::filesystem::path& run);
+
+}  // namespace scan

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// A run folder at work: opened safely, its stages done once, continued after an interruption.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "tools/command_line.h"
+#include "tools/recipe.h"
+
+namespace scan {
+
+struct RunSettings {
+  bool keep_raw = false;
+  bool resume = false;
+  bool force = false;
+  std::string effects;  // overrides the recipe's choice unless empty
+  long seed = -1;       // overrides the recipe's seed unless negative
+};
+void declare_run_settings(CommandLine& line, RunSettings& settings);
+
+class RunSession {
+ public:
+  // Reads the recipe, applies the settings, and opens the folder `run`:
+  // - new or empty: it is made;
+  // - it holds an earlier run: refused, unless --force clears that run's files or --resume continues
+  //   it (then the recipe must be the same);
+  // - it holds anything else: refused.
+  // Writes recipe.json with all defaults filled in.
+  RunSession(const std::filesystem::path& recipe, const std::filesystem::path& run,
+             const RunSettings& settings, Console& console);
+
+  // Runs a stage unless stages.json records it as done and its outputs are there unchanged. A stage
+  // behind one that ran is always run again.
+  using Work = std::function<void(const std::filesystem::path& run, const Recipe& recipe)>;
+  void stage(const std::string& name, const Work& work);
+
+  // Prints the results that the folder holds; the exit code is 1 if there is a verdict that fails.
+  int finish(const std::string& command);
+
+ private:
+  std::filesystem::path run_;
+  Recipe recipe_;
+  Console& console_;
+  bool all_done_so_far_ = true;
+};
+
+}  // namespace scan

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/run_stages.h"
+
+#include <nlohmann/json.hpp>
+
+#include "libscan/core/error.h"
+#include "tools/json_output.h"
+#include "libscan/io/atomic_file.h"
+#include "libscan/io/poses.h"
+#include "libscan/io/scan_file.h"
+#include "libscan/io/truth_file.h"
+#include "libscan/verify/surface_error.h"
+#include "tools/inputs.h"
+#include "tools/report/page.h"
+#include "tools/run_files.h"
+#include "tools/surface_stage.h"
+#include "tools/verify_stage.h"
+
+namespace scan {
+namespace {
+
+using nlohmann::ordered_json;
+
+// A JSON file of the run, or null if it is not there.
+ordered_json json_if_there(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) return nullptr;
+  return ordered_json::parse(read_file(path));
+}
+
+RunResult read_result(const std::filesystem::path& run) {
+  RunResult result{read_run_scans(run), read_run_poses(run), read_mesh(run / "surface.ply")};
+  if (result.world_from_scan.size() != result.scans.size())
+    throw Error(Trouble::input, (run / "poses.tum").string() + ": has " +
+                                    std::to_string(result.world_from_scan.size()) + " poses for " +
+                                    std::to_string(result.scans.size()) + " scans");
+  return result;
+}
+
+std::vector<std::string> scan_files(std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) names.push_back("scans/" + scan_name(i) + ".ply");
+  return names;
+}
+
+}  // namespace
+
+void align_run(const std::filesystem::path& run, const Recipe& recipe, Console& console) {
+  const auto scans = read_run_scans(run);
+  std::vector<PointCloud> clouds;
+  std::vector<Pose> guesses;
+  for (const Scan& scan : scans) {
+    clouds.push_back(scan.cloud);
+    guesses.push_back(scan.world_from_scanner_guess);
+  }
+  const MultiviewResult result = align_scans(clouds, guesses, recipe.align, console.progress());
+  console.time("align", result.cost.seconds);
+  std::vector<NamedPose> poses;
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    poses.push_back({scan_name(i), result.scans[i].world_from_scan});
+  write_json(run / "alignment.json",
+             alignment_json(result, scan_files(scans.size()), recipe.align.icp));
+  write_poses_tum(run / "poses.tum", poses);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const ScanPose& pose = result.scans[i];
+    for (const std::string& direction : pose.weak_directions)
+      console.warn("scan " + scan_name(i) + ": the data leave it free to " + direction);
+    if (static_cast<int>(i) != recipe.align.anchor && pose.stop != Stop::converged &&
+        pose.stop != Stop::degenerate)
+      throw Error(Trouble::computation,
+                  "scan " + scan_name(i) + " could not be aligned: " + std::string(name_of(pose.stop)));
+  }
+}
+
+void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Console& console) {
+  const SurfaceResult result =
+      make_surface(joined(read_run_scans(run), read_run_poses(run)), recipe.reconstruct, console);
+  write_mesh(run / "surface.ply", result.surface);
+  write_json(run / "reconstruction.json",
+             surface_json(result, std::string(name_of(recipe.reconstruct.method)),
+                          recipe.reconstruct.ssd.depth));
+}
+
+Verdict verify_run(const std::filesystem::path& run, Console&) {
+  const Recipe recipe = read_recipe(recipe_path(run));
+  const Truth truth = read_truth(truth_path(run));
+  const RunResult result = read_result(run);
+  const Verdict verdict = judge(measure_run(result, truth, recipe.verify), recipe.limits);
+  write_json(run / "verdict.json", verdict_json(verdict));
+  return verdict;
+}
+
+std::string report_run(const std::filesystem::path& run) {
+  Report report;
+  report.recipe = json_if_there(recipe_path(run));
+  if (report.recipe.is_null())
+    throw Error(Trouble::input, run.string() + ": holds no recipe.json; is it a run folder?");
+  report.title = report.recipe.value("name", run.filename().string());
+  report.effects = json_if_there(run / "effects.json");
+  report.alignment = json_if_there(run / "alignment.json");
+  report.reconstruction = json_if_there(run / "reconstruction.json");
+  report.verdict = json_if_there(run / "verdict.json");
+  report.seconds = json_if_there(run / "timings.json");
+  const RunResult result = read_result(run);
+  report.simulation = ordered_json::array();
+  for (std::size_t i = 0; i < result.scans.size(); ++i)
+    report.simulation.push_back(scan_json("scans/" + scan_name(i) + ".ply", result.scans[i]));
+  const Truth truth = read_truth(truth_path(run));
+  report.surface = in_true_world(result, truth);
+  report.deviations_m = deviations_m(report.surface.vertices, truth.surface);
+  return report_page(report);
+}
+
+void say_verdict(const ordered_json& verdict, const Console& console) {
+  const auto readable = [](const ordered_json& value, const std::string& unit) {
+    return value.is_number() ? readable_value(value.get<double>(), unit) : "unknown";
+  };
+  for (const auto& m : verdict.at("measurements")) {
+    const std::string unit = m.at("unit");
+    char line[256];
+    std::snprintf(line, sizeof line, "  %-28s %12s", m.at("name").get<std::string>().c_str(),
+                  readable(m.at("value"), unit).c_str());
+    std::string text = line;
+    if (!m.at("relation").get<std::string>().empty())
+      text += std::string("   ") + (m.at("pass").get<bool>() ? "pass" : "FAIL") + " (" +
+              m.at("relation").get<std::string>() + " " + readable(m.at("limit"), unit) + ")";
+    console.say(text);
+  }
+  console.say(verdict.at("pass").get<bool>() ? "PASS" : "FAIL");
+}
+
+}  // namespace scan

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// The stages of `scan run`, each from the run folder into the run folder.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+#include "libscan/verify/verdict.h"
+#include "tools/console.h"
+#include "tools/recipe.h"
+
+namespace scan {
+
+struct SimulateOptions {
+  bool keep_raw = false;
+};
+
+// Renders each viewpoint's raw frames, decodes them, and writes scans, truth, effects.json and, if
+// kept, the raw frames.
+void simulate_run(const std::filesystem::path& run, const Recipe& recipe,
+                  const SimulateOptions& options, Console& console);
+
+// scans/ -> alignment.json, poses.tum. scan::Error (computation) if a scan could not be aligned.
+void align_run(const std::filesystem::path& run, const Recipe& recipe, Console& console);
+
+// scans/, poses.tum -> surface.ply, reconstruction.json.
+void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Console& console);
+
+// Everything and truth/ -> verdict.json.
+Verdict verify_run(const std::filesystem::path& run, Console& console);
+
+// The report's page from what the folder holds.
+std::string report_run(const std::filesystem::path& run);
+
+// One line per measurement of a verdict.json, then PASS or FAIL.
+void say_verdict(const nlohmann::ordered_json& verdict, const Console& console);
+
+}  // namespace scan

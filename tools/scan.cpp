@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// The program `scan`: the table of its commands.
+#include "tools/commands.h"
+
+int main(int argc, char** argv) {
+  using namespace scan;
+  return run_program(
+      argc, argv,
+      {
+          {"run", "all stages of a recipe, from simulated raw data to a report",
+           "scan run datasets/recipes/bracket-laser.json /tmp/bracket", run_command},
+          {"simulate", "render a recipe's raw frames and decode them into scans",
+           "scan simulate datasets/recipes/bracket-laser.json /tmp/bracket --keep-raw",
+           simulate_command},
+          {"acquire", "turn a device's raw data into points",
+           "scan acquire stereo left.png right.png points.ply --calibration calib.txt",
+           acquire_command},
+          {"align", "bring scans into one frame",
+           "scan align bun000.ply bun045.ply /tmp/aligned --init bun.conf", align_command},
+          {"reconstruct", "make a surface from oriented points",
+           "scan reconstruct /tmp/aligned/aligned.ply surface.ply --depth 8 --trim 2mm",
+           reconstruct_command},
+          {"verify", "measure a surface, a cloud, poses or a run against the truth",
+           "scan verify surface.ply --truth part.stl --threshold 0.2mm", verify_command},
+          {"report", "write a run's report as one self-contained page",
+           "scan report /tmp/bracket /tmp/bracket.html", report_command},
+          {"info", "say what a file holds", "scan info surface.ply", info_command},
+          {"convert", "change a file's format", "scan convert part.stl part.ply",
+           convert_command},
+          {"version", "this program's version and libraries", "scan version --json",
+           version_command},
+      });
+}

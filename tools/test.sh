@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The libscan authors
+# SPDX-License-Identifier: Apache-2.0
+# Installs what is missing, builds, and runs every test. Arguments go to ctest: test.sh -R Icp
+#   PRESET=asan-ubsan tools/test.sh   runs another of the presets (release is the default)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+preset=${PRESET:-release}
+tools/setup.sh
+cmake --preset "$preset" >"/tmp/libscan-configure.$$" 2>&1 || {
+  cat "/tmp/libscan-configure.$$" >&2
+  exit 1
+}
+rm -f "/tmp/libscan-configure.$$"
+cmake --build --preset "$preset"
+ctest --preset "$preset" --parallel "$(nproc)" "$@"

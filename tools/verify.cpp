@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// scan verify: figures against the truth, and the verdict.
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "libscan/core/error.h"
+#include "libscan/io/image_file.h"
+#include "tools/json_output.h"
+#include "libscan/io/poses.h"
+#include "libscan/io/scan_file.h"
+#include "libscan/io/truth_file.h"
+#include "libscan/verify/disparity_error.h"
+#include "libscan/verify/pose_error.h"
+#include "libscan/verify/surface_error.h"
+#include "tools/commands.h"
+#include "tools/inputs.h"
+#include "tools/report/picture.h"
+#include "tools/run_stages.h"
+
+namespace scan {
+namespace {
+
+struct Arguments {
+  std::string measured, truth;
+  std::string poses, true_poses;
+  double threshold_m = 0;
+  double doffs_px = 0;
+  std::string limits;
+  std::string picture;
+};
+
+bool is_disparity(const std::string& path) {
+  return std::filesystem::path(path).extension() == ".pfm";
+}
+
+// The poses of both files by name, or by order when the names do not match.
+std::pair<std::vector<Pose>, std::vector<Pose>> matched_poses(const Arguments& arguments) {
+  const auto estimated = read_poses(arguments.poses), truth = read_poses(arguments.true_poses);
+  const auto stem = [](const std::string& name) {
+    return std::filesystem::path(name).stem().string();
+  };
+  std::vector<Pose> a, b;
+  for (const NamedPose& pose : estimated)
+    for (const NamedPose& true_pose : truth)
+      if (stem(pose.name) == stem(true_pose.name)) {
+        a.push_back(pose.pose);
+        b.push_back(true_pose.pose);
+      }
+  if (a.size() == estimated.size()) return {a, b};
+  if (estimated.size() != truth.size())
+    throw Error(Trouble::input, arguments.true_poses + ": has " + std::to_string(truth.size()) +
+                                    " poses for " + std::to_string(estimated.size()) + " in " +
+                                    arguments.poses + ", and the names do not match");
+  a.clear(), b.clear();
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    a.push_back(estimated[i].pose);
+    b.push_back(truth[i].pose);
+  }
+  return {a, b};
+}
+
+// Pose errors, felt at the corners of the measured surface's box as each scanner saw it.
+std::vector<Measurement> measure_poses(const Arguments& arguments,
+                                       std::span<const Eigen::Vector3d> points_in_world) {
+  const auto [estimated, truth] = matched_poses(arguments);
+  const Bounds box = bounds_of(points_in_world);
+  std::vector<std::vector<Eigen::Vector3d>> felt;
+  for (const Pose& world_from_scanner : truth) {
+    auto& points = felt.emplace_back();
+    for (int corner = 0; corner < 8; ++corner)
+      points.push_back(world_from_scanner.inverse() *
+                       box.corner(static_cast<Bounds::CornerType>(corner)));
+  }
+  return summarise(pose_errors(estimated, truth, felt));
+}
+
+void write_picture(const std::string& path, const Mesh& mesh, const TrueSurface& truth) {
+  const auto deviations = deviations_m(mesh.vertices, truth);
+  write_png(path, contact_sheet(six_views(mesh, deviations, deviation_limit_m(deviations), 400)));
+}
+
+std::vector<Measurement> measure_files(const Arguments& arguments) {
+  if (is_disparity(arguments.measured))
+    return disparity_error(read_float_image(arguments.measured), read_float_image(arguments.truth),
+                           arguments.doffs_px);
+  const TrueSurface truth = read_true_surface(arguments.truth);
+  const SurfaceErrorOptions options{.f_score_threshold_m = arguments.threshold_m};
+  std::vector<Measurement> measurements;
+  std::vector<Eigen::Vector3d> points;
+  if (holds_triangles(arguments.measured)) {
+    const Mesh mesh = read_mesh(arguments.measured);
+    measurements = surface_error(mesh, truth, options);
+    for (Measurement& measurement : topology(mesh)) measurements.push_back(std::move(measurement));
+    if (!arguments.picture.empty()) write_picture(arguments.picture, mesh, truth);
+    points = mesh.vertices;
+  } else {
+    const Scan scan = read_scan(arguments.measured);
+    measurements = cloud_error(scan.cloud, truth, options);
+    points = scan.cloud.points;
+  }
+  if (!arguments.poses.empty())
+    for (Measurement& measurement : measure_poses(arguments, points))
+      measurements.push_back(std::move(measurement));
+  return measurements;
+}
+
+int verify(const Arguments& arguments, Console& console) {
+  const Stopwatch watch;
+  Verdict verdict;
+  if (std::filesystem::is_directory(arguments.measured)) {
+    verdict = verify_run(arguments.measured, console);
+  } else {
+    if (arguments.truth.empty())
+      throw Error(Trouble::usage, "--truth is needed unless MEASURED is a run folder");
+    if (arguments.poses.empty() != arguments.true_poses.empty())
+      throw Error(Trouble::usage, "--poses and --true-poses go together");
+    const auto limits =
+        arguments.limits.empty() ? std::vector<Limit>{} : read_limits(arguments.limits);
+    verdict = judge(measure_files(arguments), limits);
+  }
+  console.time("verify", watch.seconds());
+  const auto json = verdict_json(verdict);
+  say_verdict(json, console);
+  console.finish("verify", verdict.pass ? "ok" : "failed", json);
+  return verdict.pass ? 0 : 1;
+}
+
+}  // namespace
+
+Action verify_command(CommandLine& line) {
+  auto arguments = std::make_shared<Arguments>();
+  line.input("MEASURED", arguments->measured, "a mesh, a cloud, a disparity (.pfm) or a run folder");
+  line.option("--truth", arguments->truth,
+              "the reference: a mesh, a run's truth/surface.json, or a disparity");
+  line.option("--poses", arguments->poses, "estimated poses");
+  line.option("--true-poses", arguments->true_poses, "the poses they are held against");
+  line.length("--threshold", arguments->threshold_m, "distance that counts as right in the F-score");
+  line.number("--doffs", arguments->doffs_px, -1e6, 1e6,
+              "disparity: difference of the principal points in px, for the depth error");
+  line.option("--limits", arguments->limits, "JSON list of limits, as in a recipe");
+  line.option("--picture", arguments->picture, "meshes: six views coloured by deviation (.png)");
+  return [arguments](Console& console) { return verify(*arguments, console); };
+}
+
+}  // namespace scan
