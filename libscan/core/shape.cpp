@@ -19,7 +19,7 @@ struct Overloaded : Cases... {
   using Cases::operator()...;
 };
 template <class... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;  // clang before 17 does not deduce aggregates
+Overloaded(Cases...) -> Overloaded<Cases...>;  // clang 14 does not deduce aggregates
 
 void check_positive(const char* shape, const char* name, double value) {
   if (std::isfinite(value) && value > 0) return;

@@ -71,9 +71,9 @@ Eigen::Vector3d onto_common_surface(Leaves leaves, Eigen::Vector3d x) {
     if (size_m == 0) break;
     if (size_m >= last_m && ++setbacks == 2) break;  // the first may be a bend, then it is rounding
     last_m = size_m;
-    const Eigen::Vector3d next = x - least_step(gradients, values);
-    if (next == x || !next.allFinite()) return next;
-    x = next;
+    const Eigen::Vector3d last = x;
+    x -= least_step(gradients, values);
+    if (x == last || !x.allFinite()) break;
   }
   return x;
 }

@@ -95,7 +95,7 @@ SphereFit fit_sphere(std::span<const Eigen::Vector3d> points) {
 PlaneFit fit_plane(std::span<const Eigen::Vector3d> points) {
   const Scaled scaled = centred_and_scaled(points, 3, "plane");
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled.points, Eigen::ComputeThinV);
-  const Eigen::VectorXd singular = svd.singularValues();
+  const Eigen::VectorXd& singular = svd.singularValues();
   if (!(singular(1) > smallest_ratio * singular(0))) throw_undetermined("plane");
   if (!(singular(2) < (1 - smallest_ratio) * singular(1))) throw_undetermined("plane");
   return {scaled.centroid_m, svd.matrixV().col(2),
