@@ -46,8 +46,8 @@ SurfaceResult delaunay(const PointCloud& cloud) {
       points.push_back(cloud.points[i]);
     }
   if (points.size() < 4)
-    throw Error(Trouble::input, "cloud: " + std::to_string(points.size()) +
-                                    " finite points, at least 4 needed");
+    throw Error(Trouble::input,
+                "cloud: " + std::to_string(points.size()) + " finite points, at least 4 needed");
   const Mesh all = advancing_front(points);
   if (all.empty())
     throw Error(Trouble::computation, "delaunay: no triangle fits the points",

@@ -7,9 +7,9 @@
 
 namespace scan {
 
-// Cohen-Steiner and Da 2004. Interpolates the points; triangles follow the normals where there are any.
-// Throws scan::Error: input for fewer than 4 points, computation for an empty result, usage if libscan
-// was built without CGAL.
+// Cohen-Steiner and Da 2004. Interpolates the points; each component is turned to follow the
+// normals where there are any. The mesh need not be closed. Throws scan::Error: input for fewer
+// than 4 finite points, computation for an empty result, usage if libscan was built without CGAL.
 SurfaceResult delaunay(const PointCloud& cloud);
 
 }  // namespace scan

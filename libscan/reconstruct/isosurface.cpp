@@ -23,7 +23,9 @@ struct CrossedCell {
 
 using CellPlace = std::array<std::int32_t, 3>;
 
-CellPlace sort_key(const FieldCell& cell) { return {cell.place[2], cell.place[1], cell.place[0]}; }
+CellPlace sort_key(const FieldCell& cell) {
+  return {cell.place[2], cell.place[1], cell.place[0]};
+}
 
 // Value at a corner: the mean of its eight functions' coefficients, summed in the functions' order.
 double corner_value(const FieldCell& cell, int corner) {
@@ -49,8 +51,7 @@ std::array<double, 8> corner_values(const FieldCell& cell) {
 }
 
 bool may_hold_zero(const FieldCell& cell) {
-  const auto [low, high] =
-      std::minmax_element(cell.coefficients.begin(), cell.coefficients.end());
+  const auto [low, high] = std::minmax_element(cell.coefficients.begin(), cell.coefficients.end());
   if (*low >= 0) return false;
   if (*high >= 0) return true;
   const int last = (1 << cell.depth) - 1;
@@ -113,7 +114,9 @@ bool owns_crossing(const CrossedCell& c, int axis) {
   return (c.corners[0] < 0) != (c.corners[1 << axis] < 0);
 }
 
-bool needs_centre(int loop_size) { return loop_size > 5; }
+bool needs_centre(int loop_size) {
+  return loop_size > 5;
+}
 
 void number_vertices(std::vector<CrossedCell>& cells, std::size_t& count) {
   count = 0;
@@ -181,8 +184,7 @@ class Polygonizer {
     std::uint32_t vertex = c.first_vertex;
     for (int axis = 0; axis < 3; ++axis)
       if (owns_crossing(c, axis))
-        mesh.vertices[vertex++] =
-            in_cube(c, edge_parameter(c, axis) * Eigen::Vector3d::Unit(axis));
+        mesh.vertices[vertex++] = in_cube(c, edge_parameter(c, axis) * Eigen::Vector3d::Unit(axis));
   }
 
   std::uint32_t vertex_of(const CrossedCell& c, int edge) const {
@@ -226,7 +228,8 @@ class Polygonizer {
     int at = 0;
     for (int k = 0; k < c.polygons.loops; ++k) {
       std::vector<std::uint32_t> loop;
-      for (int i = 0; i < c.polygons.sizes[k]; ++i) loop.push_back(vertex_of(c, c.polygons.edges[at++]));
+      for (int i = 0; i < c.polygons.sizes[k]; ++i)
+        loop.push_back(vertex_of(c, c.polygons.edges[at++]));
       if (needs_centre(c.polygons.sizes[k])) {
         mesh.vertices[next_centre] = centre(c, mesh, loop);
         for (std::size_t i = 0; i < loop.size(); ++i)
@@ -238,8 +241,8 @@ class Polygonizer {
     }
   }
 
-  // A fan from the vertex with the shortest diagonals. Loops of up to five edges meet each face once,
-  // so no diagonal lies in a face, where a neighbour could have the same one.
+  // A fan from the vertex with the shortest diagonals. Loops of up to five edges meet each face
+  // once, so no diagonal lies in a face, where a neighbour could have the same one.
   void fan(const Mesh& mesh, const std::vector<std::uint32_t>& loop,
            std::vector<Triangle>& triangles) const {
     const std::size_t n = loop.size();

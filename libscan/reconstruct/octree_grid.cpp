@@ -31,7 +31,9 @@ BlockPlace place_of(std::uint64_t key) {
           static_cast<std::int32_t>(key >> (2 * bits_per_axis))};
 }
 
-int blocks_per_axis(int depth) { return ((1 << depth) + 1) / block_width + 1; }
+int blocks_per_axis(int depth) {
+  return ((1 << depth) + 1) / block_width + 1;
+}
 
 void sort_unique(std::vector<std::uint64_t>& keys) {
   std::sort(keys.begin(), keys.end());

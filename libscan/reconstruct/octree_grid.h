@@ -35,11 +35,13 @@ inline constexpr int block_size = block_width * block_width * block_width;
 using BlockPlace = std::array<std::int32_t, 3>;  // functions 4*place ... 4*place+3 per axis
 
 // Slot of a function in its block; x runs fastest.
-inline int slot_in_block(int x, int y, int z) { return x + block_width * (y + block_width * z); }
+inline int slot_in_block(int x, int y, int z) {
+  return x + block_width * (y + block_width * z);
+}
 
 struct BlockLevel {
   int depth = 0;
-  std::size_t active = 0;         // the first blocks are active, the others halo
+  std::size_t active = 0;          // the first blocks are active, the others halo
   std::vector<BlockPlace> blocks;  // active ones in order of their keys, then halo ones likewise
   std::vector<std::uint64_t> keys;
   // Blocks at offset (-1,-1,-1) ... (1,1,1), x fastest; -1: none.
@@ -63,9 +65,9 @@ struct OctreeGrid {
   int finest_depth() const { return levels.back().depth; }
 };
 
-// Each point (in the unit cube) activates, on all levels to its own depth, the functions of its cell
-// and of a ring of one cell around it; levels to `complete_depth` are active as a whole. Throws scan::Error (resource) if the levels would need more
-// than `limit_gib`.
+// Each point (in the unit cube) activates, on all levels to its own depth, the functions of its
+// cell and of a ring of one cell around it; levels to `complete_depth` are active as a whole.
+// Throws scan::Error (resource) if the levels would need more than `limit_gib`.
 OctreeGrid make_octree_grid(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
                             int complete_depth, double limit_gib = 16);
 
@@ -73,7 +75,9 @@ OctreeGrid make_octree_grid(std::span<const Eigen::Vector3d> points, std::span<c
 std::vector<int> depths_seen(const OctreeGrid& grid, std::span<const Eigen::Vector3d> points);
 
 // Blocks of the neighbour tables by offsets in {-1, 0, 1}.
-inline int neighbour_slot(int dx, int dy, int dz) { return (dx + 1) + 3 * (dy + 1) + 9 * (dz + 1); }
+inline int neighbour_slot(int dx, int dy, int dz) {
+  return (dx + 1) + 3 * (dy + 1) + 9 * (dz + 1);
+}
 
 // The cell of a coordinate in [0, 1] among `cells`.
 int cell_of(double u, int cells);

@@ -97,14 +97,17 @@ SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
     auto operator<=>(const Address&) const = default;
   };
   std::vector<Address> addresses(chosen.size());
-  const auto cell_along = [&](const Eigen::Vector3d& u, int a) { return cell_of(u[a], level.cells()); };
+  const auto cell_along = [&](const Eigen::Vector3d& u, int a) {
+    return cell_of(u[a], level.cells());
+  };
   parallel_for(chosen.size(), [&](std::size_t i) {
     const Eigen::Vector3d& u = samples.points[chosen[i]];
     const BlockPlace cell = {cell_along(u, 0), cell_along(u, 1), cell_along(u, 2)};
     const std::int32_t block = level.find({cell[0] / 4, cell[1] / 4, cell[2] / 4});
-    addresses[i] = {static_cast<std::uint32_t>(block),
-                    static_cast<std::uint32_t>(slot_in_block(cell[0] % 4, cell[1] % 4, cell[2] % 4)),
-                    chosen[i]};
+    addresses[i] = {
+        static_cast<std::uint32_t>(block),
+        static_cast<std::uint32_t>(slot_in_block(cell[0] % 4, cell[1] % 4, cell[2] % 4)),
+        chosen[i]};
   });
   std::sort(addresses.begin(), addresses.end());
   bucket_of_block_.assign(level.blocks.size(), -1);
@@ -223,8 +226,9 @@ double SampleTerm::energy(const BlockLevel& level, const std::vector<double>& u)
     for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
       const Placed& sample = placed_[i];
       const ValueAndSlope f = evaluate(cube + sample.corner, weights_at(sample.in_cell));
-      total += sample.weight * (value_weight_ * f.value * f.value +
-                                gradient_weight_ * (cells_ * f.slope - sample.normal).squaredNorm());
+      total +=
+          sample.weight * (value_weight_ * f.value * f.value +
+                           gradient_weight_ * (cells_ * f.slope - sample.normal).squaredNorm());
     }
   }
   return total;

@@ -119,10 +119,11 @@ std::vector<int> sample_depths(const Samples& samples, double samples_per_cell, 
   std::vector<int> depths(samples.points.size());
   for (std::size_t i = 0; i < depths.size(); ++i) {
     const double cell = std::sqrt(samples_per_cell * samples.area[i]);
-    depths[i] = cell > 0 ? static_cast<int>(std::clamp(std::floor(-std::log2(cell)),
-                                                       static_cast<double>(least),
-                                                       static_cast<double>(most)))
-                         : most;
+    depths[i] =
+        cell > 0
+            ? static_cast<int>(std::clamp(std::floor(-std::log2(cell)), static_cast<double>(least),
+                                          static_cast<double>(most)))
+            : most;
   }
   return depths;
 }

@@ -28,6 +28,7 @@ Samples prepare_samples(const PointCloud& cloud);
 
 // Depth of each sample: the deepest whose cells hold `samples_per_cell` samples where the surface
 // passes, within the limits.
-std::vector<int> sample_depths(const Samples& samples, double samples_per_cell, int least, int most);
+std::vector<int> sample_depths(const Samples& samples, double samples_per_cell, int least,
+                               int most);
 
 }  // namespace scan

@@ -5,7 +5,8 @@
 namespace scan {
 namespace {
 
-// Calls visit(slot of 27, block, slot of block) for the cell's functions that are active on `level`.
+// Calls visit(slot of 27, block, slot of block) for the cell's functions that are active on
+// `level`.
 template <class Visit>
 void for_active_functions(const BlockLevel& level, const std::array<std::int32_t, 3>& place,
                           Visit&& visit) {
@@ -20,7 +21,8 @@ void for_active_functions(const BlockLevel& level, const std::array<std::int32_t
         const std::int32_t block = level.find_active({bx, by, bz});
         if (block < 0) continue;
         for (int i = 0; i < 27; ++i) {
-          const int x = place[0] + i % 3 - block_width * bx, y = place[1] + i / 3 % 3 - block_width * by,
+          const int x = place[0] + i % 3 - block_width * bx,
+                    y = place[1] + i / 3 % 3 - block_width * by,
                     z = place[2] + i / 9 - block_width * bz;
           if (x >= 0 && x < block_width && y >= 0 && y < block_width && z >= 0 && z < block_width)
             visit(i, static_cast<std::size_t>(block), slot_in_block(x, y, z));
@@ -31,10 +33,9 @@ void for_active_functions(const BlockLevel& level, const std::array<std::int32_t
 void add_own_coefficients(const SplineField& field, FieldCell& cell) {
   const int l = cell.depth - coarsest_depth;
   if (l >= static_cast<int>(field.grid.levels.size())) return;
-  for_active_functions(field.grid.levels[l], cell.place,
-                       [&](int i, std::size_t block, int slot) {
-                         cell.coefficients[i] += field.coefficients[l][block * block_size + slot];
-                       });
+  for_active_functions(field.grid.levels[l], cell.place, [&](int i, std::size_t block, int slot) {
+    cell.coefficients[i] += field.coefficients[l][block * block_size + slot];
+  });
 }
 
 // One axis of the refinement: three coarse functions of a cell give the three of its half.

@@ -9,8 +9,8 @@
 namespace scan {
 namespace {
 
-constexpr int halo = 2;                          // reach of the stencil, functions
-constexpr int wide = block_width + 2 * halo;     // side of what a block's stencil reads
+constexpr int halo = 2;                       // reach of the stencil, functions
+constexpr int wide = block_width + 2 * halo;  // side of what a block's stencil reads
 constexpr int lanes_z = block_width * wide * wide;
 constexpr int lanes_y = block_width * block_width * wide;
 
@@ -30,14 +30,14 @@ void refine_cube(const double* coarse, double* fine) {
     for (int i = 0; i < 4; ++i)
       for (int k = 0; k < 4; ++k) {
         const double a = x[k + 4 * (i / 2 + 3 * z)], b = x[k + 4 * (i / 2 + 1 + 3 * z)];
-        y[k + 4 * (i + 4 * z)] = i % 2 == 0 ? near_weight * a + far_weight * b
-                                            : far_weight * a + near_weight * b;
+        y[k + 4 * (i + 4 * z)] =
+            i % 2 == 0 ? near_weight * a + far_weight * b : far_weight * a + near_weight * b;
       }
   for (int i = 0; i < 4; ++i)
     for (int k = 0; k < 16; ++k) {
       const double a = y[k + 16 * (i / 2)], b = y[k + 16 * (i / 2 + 1)];
-      fine[k + 16 * i] = i % 2 == 0 ? near_weight * a + far_weight * b
-                                    : far_weight * a + near_weight * b;
+      fine[k + 16 * i] =
+          i % 2 == 0 ? near_weight * a + far_weight * b : far_weight * a + near_weight * b;
     }
 }
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Functions that are sums of B-splines on all levels of an octree, and how levels act together.
 //
-// Splines are nested: a coarse function is a sum of finer ones (the refinement mask). So the sum u of
-// a level's own coefficients and those of all coarser levels, written in that level's functions, is
-// all that the level's integrals and samples need.
+// Splines are nested: a coarse function is a sum of finer ones (the refinement mask). So the sum u
+// of a level's own coefficients and those of all coarser levels, written in that level's functions,
+// is all that the level's integrals and samples need.
 #pragma once
 
 #include <vector>

@@ -19,11 +19,13 @@ constexpr double least_support = 1e-3;  // of the data's area, for a component t
 
 void require(bool fulfilled, const char* field, double value, const char* limit) {
   if (!fulfilled)
-    throw Error(Trouble::usage, std::string("ssd: ") + field + " is " + std::to_string(value) +
-                                    ", limit " + limit);
+    throw Error(Trouble::usage,
+                std::string("ssd: ") + field + " is " + std::to_string(value) + ", limit " + limit);
 }
 
-bool is_positive(double x) { return x > 0 && std::isfinite(x); }
+bool is_positive(double x) {
+  return x > 0 && std::isfinite(x);
+}
 
 SurfaceResult world_result(Mesh mesh, const Samples& samples) {
   if (mesh.empty())

@@ -28,7 +28,8 @@ double dot(const LevelArrays& a, const LevelArrays& b, std::size_t finest) {
 // a += factor * b
 void add_scaled(LevelArrays& a, double factor, const LevelArrays& b, std::size_t finest) {
   for (std::size_t l = 0; l <= finest; ++l)
-    parallel_for(a[l].size(), [&](std::size_t i) { a[l][i] += factor * b[l][i]; }, chunk);
+    parallel_for(
+        a[l].size(), [&](std::size_t i) { a[l][i] += factor * b[l][i]; }, chunk);
 }
 
 // direction = z + factor * direction
@@ -40,9 +41,9 @@ void next_direction(LevelArrays& direction, double factor, const LevelArrays& z,
         [&](std::size_t i) { direction[l][i] = z[l][i] + factor * direction[l][i]; }, chunk);
 }
 
-// The coarsest level solved exactly, the others by their diagonal. The exact solution is what smooth
-// functions that vanish at the samples need: their energy is far below that of the functions they
-// are made of.
+// The coarsest level solved exactly, the others by their diagonal. The exact solution is what
+// smooth functions that vanish at the samples need: their energy is far below that of the functions
+// they are made of.
 class Preconditioner {
  public:
   explicit Preconditioner(const SsdSystem& system)

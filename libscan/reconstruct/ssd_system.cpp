@@ -32,8 +32,8 @@ void SsdSystem::use_levels(std::size_t finest) {
   for (std::uint32_t i = 0; i < depths_.size(); ++i)
     chosen[std::min<std::size_t>(depths_[i] - coarsest_depth, finest)].push_back(i);
   for (std::size_t l = 0; l <= finest; ++l)
-    terms_[l] = SampleTerm(grid_.levels[l], samples_, area_, chosen[l], weights_.value,
-                           weights_.gradient);
+    terms_[l] =
+        SampleTerm(grid_.levels[l], samples_, area_, chosen[l], weights_.value, weights_.gradient);
 }
 
 void SsdSystem::accumulate_coarse_to_fine(const LevelArrays& x) {
@@ -91,8 +91,8 @@ LevelArrays SsdSystem::diagonal() const {
     parallel_for(level.active, [&](std::size_t b) {
       for (int slot = 0; slot < block_size; ++slot) {
         const std::size_t i = b * block_size + slot;
-        const double entry = sum[i] + weights_.smoothness *
-                                          bending_[l].diagonal(level.blocks[b], slot);
+        const double entry =
+            sum[i] + weights_.smoothness * bending_[l].diagonal(level.blocks[b], slot);
         result[l][i] = entry > 0 ? entry : 1;
       }
     });

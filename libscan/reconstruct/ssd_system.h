@@ -16,9 +16,10 @@ struct SsdWeights {
   double smoothness = 0;
 };
 
-// E(x) = sum_i a_i (value f(p_i)^2 + gradient |grad f(p_i) - n_i|^2) + smoothness integral |D^2 f|^2
-// with sum a_i = 1 (Calakli and Taubin 2011, eq. 3-5), f = sum of all levels' splines up to a finest
-// one. Half its gradient is A x - b. A is semidefinite: levels repeat each other's functions.
+// E(x) = sum_i a_i (value f(p_i)^2 + gradient |grad f(p_i) - n_i|^2) + smoothness integral |D^2
+// f|^2 with sum a_i = 1 (Calakli and Taubin 2011, eq. 3-5), f = sum of all levels' splines up to a
+// finest one. Half its gradient is A x - b. A is semidefinite: levels repeat each other's
+// functions.
 class SsdSystem {
  public:
   // Keeps references: grid and samples must live as long.

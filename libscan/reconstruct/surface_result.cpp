@@ -6,9 +6,12 @@ namespace scan {
 
 std::string_view name_of(SolveStop stop) {
   switch (stop) {
-    case SolveStop::converged: return "converged";
-    case SolveStop::iteration_limit: return "iteration limit";
-    case SolveStop::direct: return "direct";
+    case SolveStop::converged:
+      return "converged";
+    case SolveStop::iteration_limit:
+      return "iteration limit";
+    case SolveStop::direct:
+      return "direct";
   }
   return "unknown";
 }

@@ -22,7 +22,7 @@ struct SurfaceResult {
   int iterations = 0;
   double relative_residual = 0;
   SolveStop stop = SolveStop::iteration_limit;
-  std::size_t invalid_points = 0;  // not finite or without a normal, left out
+  std::size_t invalid_points = 0;   // not finite or without a normal, left out
   std::size_t outlying_points = 0;  // far from all others, left out
   Cost cost;
 };

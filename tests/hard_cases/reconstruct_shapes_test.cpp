@@ -4,6 +4,9 @@
 // open surfaces, far origins, tiny and huge units.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "libscan/reconstruct/ssd.h"
 #include "libscan/reconstruct/trim.h"
 #include "tests/reconstruct/shapes.h"
@@ -20,7 +23,9 @@ void expect_torus(const SurfaceResult& result) {
 
 PointCloud with_noise(PointCloud cloud, double sigma_m, double sigma_normal) {
   RandomStream random(5, 0, 0);
-  const auto step = [&] { return Eigen::Vector3d(random.normal(), random.normal(), random.normal()); };
+  const auto step = [&] {
+    return Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+  };
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     cloud.points[i] += sigma_m * step();
     cloud.normals[i] = (cloud.normals[i] + sigma_normal * step()).normalized();
@@ -83,6 +88,42 @@ TEST(ReconstructHardCases, FollowsUnevenDensity) {
   for (std::uint32_t i = 0; i < all.size(); ++i)
     if (random.uniform() < std::pow(200.0, -(all.points[i][0] + 1.35) / 2.7)) kept.push_back(i);
   expect_torus(ssd(subset(all, kept), {.depth = 7}));
+}
+
+// Points on a line leave the surface free to turn about it: whatever comes is closed and near them.
+TEST(ReconstructHardCases, TakesPointsOnALine) {
+  PointCloud cloud;
+  for (int i = 0; i < 200; ++i) {
+    cloud.points.push_back({0.01 * i, 0, 0});
+    cloud.normals.push_back(Eigen::Vector3d::UnitZ());
+  }
+  const SurfaceResult result = ssd(cloud, {.depth = 5});
+  EXPECT_TRUE(edge_census(result.surface).watertight);
+  // f = z is what the normals say and costs no bending; the walls close the surface.
+  double nearest = 1;
+  for (const auto& v : result.surface.vertices) nearest = std::min(nearest, std::abs(v[2]));
+  EXPECT_LT(nearest, 1e-4);
+}
+
+// Two sheets that face away from each other, a plate three cells thick at depth 7.
+TEST(ReconstructHardCases, KeepsAThinPlateWhole) {
+  PointCloud cloud;
+  RandomStream random(4, 0, 0);
+  const double thickness = 3 * 1.25 / 128;
+  for (int i = 0; i < 40000; ++i) {
+    const double side = i % 2 == 0 ? 1 : -1;
+    cloud.points.push_back({random.uniform(), random.uniform(), side * thickness / 2});
+    cloud.normals.push_back(side * Eigen::Vector3d::UnitZ());
+  }
+  const SurfaceResult result = ssd(cloud, {.depth = 7});
+  const EdgeCensus census = edge_census(result.surface);
+  EXPECT_TRUE(census.watertight);
+  for (const auto& v : result.surface.vertices) {
+    const bool in_plate = v[0] > 0.1 && v[0] < 0.9 && v[1] > 0.1 && v[1] < 0.9;
+    if (in_plate) {
+      EXPECT_NEAR(std::abs(v[2]), thickness / 2, 0.1 * thickness);
+    }
+  }
 }
 
 TEST(ReconstructHardCases, KeepsAnOpenSurfaceOpenAfterTrimming) {

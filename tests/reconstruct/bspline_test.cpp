@@ -16,7 +16,9 @@ double function(int i, double x, int derivative) {
   const int cell = static_cast<int>(std::floor(x)), local = i - cell;
   if (local < 0 || local > 2) return 0;
   const SplineWeights w = spline_weights(x - cell);
-  return derivative == 0 ? w.value[local] : derivative == 1 ? w.slope[local] : second_derivative[local];
+  return derivative == 0   ? w.value[local]
+         : derivative == 1 ? w.slope[local]
+                           : second_derivative[local];
 }
 
 // Gauss-Legendre with three nodes a cell is exact to degree 5; the products have degree 4 at most.
@@ -66,7 +68,8 @@ TEST(SplineWeights, SumToOneAndReproduceLinearFunctions) {
 TEST(RefinementMask, WritesACoarseFunctionInFinerOnes) {
   for (const double x : {0.1, 0.9, 1.4, 2.2, 2.9}) {
     double fine = 0;
-    for (int tap = 0; tap < 4; ++tap) fine += refinement_mask[tap] * function(4 - 2 + tap, 2 * x, 0);
+    for (int tap = 0; tap < 4; ++tap)
+      fine += refinement_mask[tap] * function(4 - 2 + tap, 2 * x, 0);
     EXPECT_NEAR(fine, function(2, x, 0), 1e-15);
   }
 }

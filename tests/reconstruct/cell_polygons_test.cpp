@@ -44,8 +44,8 @@ TEST(CellPolygons, UseEachCrossedEdgeOnce) {
   }
 }
 
-// Mirrored at x = 1 the cube has a neighbour with the same four values on the common face: both must
-// join its crossings by the same segments, in opposite directions.
+// Mirrored at x = 1 the cube has a neighbour with the same four values on the common face: both
+// must join its crossings by the same segments, in opposite directions.
 TEST(CellPolygons, AgreeOnACommonFace) {
   RandomStream random(2, 0, 0);
   for (int mask = 0; mask < 4096; ++mask) {

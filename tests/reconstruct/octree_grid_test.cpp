@@ -58,7 +58,8 @@ TEST(OctreeGrid, SurroundsEachActiveBlock) {
         p[1] += slot / 3 % 3 - 1;
         p[2] += slot / 9 - 1;
         const int last = (level.cells() + 1) / block_width;
-        const bool on_level = std::min({p[0], p[1], p[2]}) >= 0 && std::max({p[0], p[1], p[2]}) <= last;
+        const bool on_level =
+            std::min({p[0], p[1], p[2]}) >= 0 && std::max({p[0], p[1], p[2]}) <= last;
         ASSERT_EQ(level.neighbours[b][slot] >= 0, on_level);
         if (on_level) {
           EXPECT_EQ(level.blocks[level.neighbours[b][slot]], p);

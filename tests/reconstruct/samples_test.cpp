@@ -17,9 +17,9 @@ TEST(Samples, AreasAddUpToTheSurface) {
   const Samples samples = prepare_samples(sphere_cloud(20000));
   const double total = std::accumulate(samples.area.begin(), samples.area.end(), 0.0);
   const double true_area = 4 * std::numbers::pi / (samples.box.side_m * samples.box.side_m);
-  // pi r_k^2 / k has mean 1 and spread 1/sqrt(k) = 0.32 about the true area per point; the median of
-  // ten neighbours is below the mean of this skewed law (by about 1/(3k)) and neighbours share most
-  // of their spread: 10 % bounds the bias, the mean over 20,000 points has no noise beside it.
+  // pi r_k^2 / k has mean 1 and spread 1/sqrt(k) = 0.32 about the true area per point; the median
+  // of ten neighbours is below the mean of this skewed law (by about 1/(3k)) and neighbours share
+  // most of their spread: 10 % bounds the bias, the mean over 20,000 points has no noise beside it.
   EXPECT_NEAR(total / true_area, 1, 0.1);
 }
 

@@ -55,19 +55,21 @@ TEST(SsdSystem, EnergyIsThatOfTheFieldAtTheSamples) {
   const LevelArrays x = random_arrays(problem.grid, 1);
   const SplineField field{problem.grid, x};
   double expected = 0;
-  const double total = std::accumulate(problem.samples.area.begin(), problem.samples.area.end(), 0.0);
+  const double total =
+      std::accumulate(problem.samples.area.begin(), problem.samples.area.end(), 0.0);
   for (std::size_t i = 0; i < problem.samples.points.size(); ++i) {
     const FieldValue f = evaluate(field, problem.samples.points[i]);
-    expected += problem.samples.area[i] / total *
-                (50 * f.value * f.value +
-                 5e-4 * (f.gradient - problem.samples.normals[i]).squaredNorm());
+    expected +=
+        problem.samples.area[i] / total *
+        (50 * f.value * f.value + 5e-4 * (f.gradient - problem.samples.normals[i]).squaredNorm());
   }
   // A few thousand terms of one sign: relative rounding far below 1e-11.
   EXPECT_NEAR(system.energy(x), expected, 1e-11 * expected);
 }
 
-// |D^2 f|^2 by quadrature: in each finest cell of any place the function is one polynomial of degree
-// two along each axis, its products have degree four, and three Gauss nodes an axis are exact.
+// |D^2 f|^2 by quadrature: in each finest cell of any place the function is one polynomial of
+// degree two along each axis, its products have degree four, and three Gauss nodes an axis are
+// exact.
 TEST(SsdSystem, SmoothnessIsTheIntegralOverTheCube) {
   Problem problem;
   problem.weights = {0, 0, 1};
@@ -95,13 +97,15 @@ TEST(SsdSystem, SmoothnessIsTheIntegralOverTheCube) {
       const Eigen::Vector3i k(i % 3, i / 3 % 3, i / 9);
       double weight = 1;
       for (int a = 0; a < 3; ++a) weight *= k[a] == 1 ? 8. / 18 : 5. / 18;
-      sum += weight * second(cell, Eigen::Vector3d::Constant(0.5) +
-                                       std::sqrt(0.6) / 2 * (k.cast<double>().array() - 1).matrix());
+      sum +=
+          weight * second(cell, Eigen::Vector3d::Constant(0.5) +
+                                    std::sqrt(0.6) / 2 * (k.cast<double>().array() - 1).matrix());
     }
     return sum / std::pow(8, cell.depth);
   };
   double expected = 0;
-  for (int i = 0; i < 512; ++i) expected += integral(coarsest_cell(field, {i % 8, i / 8 % 8, i / 64}));
+  for (int i = 0; i < 512; ++i)
+    expected += integral(coarsest_cell(field, {i % 8, i / 8 % 8, i / 64}));
   // Differences over h = 1/16 lose four bits of 53; sums of one sign: 1e-10 is generous.
   EXPECT_NEAR(system.energy(x), expected, 1e-10 * expected);
 }

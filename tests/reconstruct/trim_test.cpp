@@ -12,7 +12,7 @@ namespace {
 // Two unit squares side by side, of two triangles each, and a small triangle apart.
 SurfaceResult strip() {
   SurfaceResult result;
-  result.surface.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0},   {0, 1, 0},   {1, 1, 0},
+  result.surface.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0},   {0, 1, 0},  {1, 1, 0},
                              {2, 1, 0}, {5, 5, 0}, {5.1, 5, 0}, {5, 5.1, 0}};
   result.surface.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {6, 7, 8}};
   result.support_m = {0, 0, 9, 0, 0, 9, 0, 0, 0};
