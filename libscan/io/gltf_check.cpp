@@ -11,6 +11,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/byte_order.h"
+#include "libscan/io/json_reader.h"
 
 namespace scan {
 namespace {
@@ -53,8 +54,7 @@ class Checker {
         if (*binary_bytes_ > bytes.size() - chunk - 8) fail("the binary chunk ends early");
       }
     }
-    document_ = json::parse(text, nullptr, false);
-    if (document_.is_discarded()) fail("is not valid JSON");
+    document_ = parse_json(text, path_.string());
   }
 
   const json& list(const char* key) const {

@@ -79,9 +79,10 @@ class JsonReader {
   std::set<std::string, std::less<>> known_;
 };
 
-// Parses a file; comments are allowed, rubbish behind the value is not. scan::Error (input) with
-// line and column otherwise.
+// Parses a file; comments are allowed, rubbish behind the value is not, nor numbers beyond double or
+// more than 256 levels. scan::Error (input) with the line otherwise.
 nlohmann::json read_json(const std::filesystem::path& path);
+nlohmann::json parse_json(std::string_view text, const std::string& name);
 
 // The member of `words` nearest to `word` (edit distance at most a third of its length, at least 1),
 // or empty.

@@ -23,11 +23,19 @@ std::vector<std::string> keys_of(const ordered_json& object) {
 }
 
 TEST(JsonOutput, MeasurementsHaveTheirStableKeys) {
-  const ordered_json free = measurement_json({.name = "genus", .value = 4, .unit = "1", .over = "mesh", .count = 1});
+  Measurement measurement;
+  measurement.name = "genus";
+  measurement.value = 4;
+  const ordered_json free = measurement_json(measurement);
   EXPECT_EQ(keys_of(free), (std::vector<std::string>{"name", "value", "unit", "over", "count", "limit", "relation", "pass", "reason"}));
   EXPECT_TRUE(free["limit"].is_null());
   EXPECT_TRUE(free["relation"].is_null());
-  const ordered_json limited = measurement_json({.name = "accuracy_rms", .value = std::nan(""), .unit = "m", .limit = 0.1, .relation = "<=", .reason = "spec", .pass = false});
+  measurement.value = std::nan("");
+  measurement.limit = 0.1;
+  measurement.relation = "<=";
+  measurement.reason = "spec";
+  measurement.pass = false;
+  const ordered_json limited = measurement_json(measurement);
   EXPECT_TRUE(limited["value"].is_null());
   EXPECT_EQ(limited["limit"], 0.1);
   EXPECT_EQ(limited["reason"], "spec");
@@ -91,7 +99,8 @@ TEST(JsonOutput, ScansCountTheirRays) {
 }
 
 TEST(JsonOutput, ReportsAddUpTheirSeconds) {
-  CommandReport report{.command = "align", .version = "0.1.0"};
+  CommandReport report;
+  report.command = "align";
   report.seconds = {{"read", 0.25}, {"align", 0.5}};
   const ordered_json object = report_json(report);
   EXPECT_EQ(object["seconds"]["total"], 0.75);

@@ -49,7 +49,7 @@ TEST(Pcd, NamesWhatIsBroken) {
   EXPECT_NE(said("ply\n").find("unknown keyword 'ply'"), std::string::npos);
   EXPECT_NE(said("VERSION 0.7\n").find("ends before 'DATA'"), std::string::npos);
   EXPECT_NE(said(pcd("1", "ascii\n1 2 x 7 7 0\n")).find("PCD point 0, field 'z': 'x'"), std::string::npos);
-  EXPECT_NE(said(pcd("2", "ascii\n1 2 3 7 7 0          \n")).find("promises 2 points, it has 1"), std::string::npos);
+  EXPECT_NE(said(pcd("2", "ascii\n1 2 3 7 7 0                    \n")).find("promises 2 points, it has 1"), std::string::npos);
   EXPECT_NE(said(pcd("1", "text\n")).find("DATA must be"), std::string::npos);
   EXPECT_NE(said("FIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nPOINTS 1\nDATA ascii\n1 2\n").find("no field 'z'"),
             std::string::npos);
