@@ -82,7 +82,9 @@ const json* JsonReader::find(std::string_view key) {
   return found == object_->end() ? nullptr : &*found;
 }
 
-bool JsonReader::has(std::string_view key) const { return object_->contains(std::string(key)); }
+bool JsonReader::has(std::string_view key) const {
+  return object_->contains(std::string(key));
+}
 
 bool JsonReader::has_quantity(std::string_view name) const {
   for (const Units* units : {&length_units, &angle_units, &time_units, &frequency_units})
@@ -184,7 +186,9 @@ double JsonReader::angle_rad(std::string_view name) {
 double JsonReader::angle_rad(std::string_view name, double otherwise_rad) {
   return quantity(name, angle_units, &otherwise_rad);
 }
-double JsonReader::time_s(std::string_view name) { return quantity(name, time_units, nullptr); }
+double JsonReader::time_s(std::string_view name) {
+  return quantity(name, time_units, nullptr);
+}
 double JsonReader::time_s(std::string_view name, double otherwise_s) {
   return quantity(name, time_units, &otherwise_s);
 }
@@ -277,7 +281,9 @@ void JsonReader::finish() const {
 }
 
 json parse_json(std::string_view text, const std::string& name) {
-  const auto fail = [&](const std::string& what) { throw Error(Trouble::input, name + ": " + what); };
+  const auto fail = [&](const std::string& what) {
+    throw Error(Trouble::input, name + ": " + what);
+  };
   const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
     if (depth > max_depth) fail("JSON is nested deeper than " + std::to_string(max_depth));
     return true;
@@ -287,13 +293,16 @@ json parse_json(std::string_view text, const std::string& name) {
   } catch (const json::parse_error& error) {
     const std::size_t end = std::min<std::size_t>(error.byte, text.size());
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(end), '\n');
-    fail("not valid JSON near line " + std::to_string(line) + " (byte " + std::to_string(error.byte) + ")");
+    fail("not valid JSON near line " + std::to_string(line) + " (byte " +
+         std::to_string(error.byte) + ")");
   } catch (const json::exception& error) {
     fail(std::string("not valid JSON: ") + error.what());
   }
   return {};
 }
 
-json read_json(const std::filesystem::path& path) { return parse_json(read_file(path), path.string()); }
+json read_json(const std::filesystem::path& path) {
+  return parse_json(read_file(path), path.string());
+}
 
 }  // namespace scan

@@ -27,7 +27,8 @@ TEST(JsonOutput, MeasurementsHaveTheirStableKeys) {
   measurement.name = "genus";
   measurement.value = 4;
   const ordered_json free = measurement_json(measurement);
-  EXPECT_EQ(keys_of(free), (std::vector<std::string>{"name", "value", "unit", "over", "count", "limit", "relation", "pass", "reason"}));
+  EXPECT_EQ(keys_of(free), (std::vector<std::string>{"name", "value", "unit", "over", "count",
+                                                     "limit", "relation", "pass", "reason"}));
   EXPECT_TRUE(free["limit"].is_null());
   EXPECT_TRUE(free["relation"].is_null());
   measurement.value = std::nan("");
@@ -53,7 +54,8 @@ TEST(JsonOutput, AlignmentIsWhatReadPosesReads) {
   const std::vector<std::string> files = {"a.ply", "b.ply"};
   const ordered_json alignment = alignment_json(files, result, {});
   EXPECT_EQ(keys_of(alignment["scans"][0]),
-            (std::vector<std::string>{"file", "world_from_scan", "stop", "iterations", "rms_m", "inlier_fraction_of_source", "weak_directions"}));
+            (std::vector<std::string>{"file", "world_from_scan", "stop", "iterations", "rms_m",
+                                      "inlier_fraction_of_source", "weak_directions"}));
   EXPECT_EQ(alignment["scans"][1]["stop"], "converged");
   EXPECT_EQ(alignment["method"], "point-to-plane");
   EXPECT_EQ(alignment["search"], "kd-tree");
@@ -78,7 +80,8 @@ TEST(JsonOutput, PairsCarryTheirInformation) {
 
 TEST(JsonOutput, SurfacesTellTheirTopology) {
   SurfaceResult result;
-  result.surface = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  result.surface = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
   const ordered_json object = surface_json("ssd", 8, result);
   EXPECT_EQ(object["triangles"], 4);
   EXPECT_EQ(object["watertight"], true);
