@@ -9,7 +9,6 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/units.h"
-#include "libscan/io/atomic_file.h"
 
 namespace scan {
 namespace {
@@ -21,8 +20,6 @@ const Units length_units = {{"_m", 1}, {"_mm", 1e-3}, {"_um", 1e-6}};
 const Units angle_units = {{"_rad", 1}, {"_deg", rad_from_deg(1)}};
 const Units time_units = {{"_s", 1}, {"_ms", 1e-3}, {"_us", 1e-6}, {"_ns", 1e-9}};
 const Units frequency_units = {{"_hz", 1}, {"_mhz", 1e6}};
-
-constexpr int max_depth = 256;  // dumps and other programs' parsers recurse
 
 // A value as a message shows it.
 std::string shown(const json& value) {
@@ -278,31 +275,6 @@ void JsonReader::finish() const {
     throw Error(Trouble::input, place_ + "/" + key + ": unknown key",
                 near.empty() ? "" : "did you mean '" + near + "'?");
   }
-}
-
-json parse_json(std::string_view text, const std::string& name) {
-  const auto fail = [&](const std::string& what) {
-    throw Error(Trouble::input, name + ": " + what);
-  };
-  const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
-    if (depth > max_depth) fail("JSON is nested deeper than " + std::to_string(max_depth));
-    return true;
-  };
-  try {
-    return json::parse(text.begin(), text.end(), limit_depth, true, true);
-  } catch (const json::parse_error& error) {
-    const std::size_t end = std::min<std::size_t>(error.byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(end), '\n');
-    fail("not valid JSON near line " + std::to_string(line) + " (byte " +
-         std::to_string(error.byte) + ")");
-  } catch (const json::exception& error) {
-    fail(std::string("not valid JSON: ") + error.what());
-  }
-  return {};
-}
-
-json read_json(const std::filesystem::path& path) {
-  return parse_json(read_file(path), path.string());
 }
 
 }  // namespace scan
