@@ -38,7 +38,8 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes
   if (std::filesystem::is_directory(status))
     throw Error(Trouble::input, path.string() + ": is a folder, not a file");
   std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) throw Error(Trouble::input, path.string() + ": cannot be read: " + std::strerror(errno));
+  if (!file)
+    throw Error(Trouble::input, path.string() + ": cannot be read: " + std::strerror(errno));
   const auto bytes = static_cast<std::size_t>(file.tellg());
   if (bytes > limit_bytes)
     throw Error(Trouble::resource, path.string() + ": has " + std::to_string(bytes) +
@@ -56,8 +57,9 @@ void make_folder(const std::filesystem::path& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return;
   throw Error(Trouble::output, path.string() + ": " +
-                                   (std::filesystem::exists(path, ignored) ? "is a file, a folder is needed"
-                                                                  : "cannot be created: " + error.message()));
+                                   (std::filesystem::exists(path, ignored)
+                                        ? "is a file, a folder is needed"
+                                        : "cannot be created: " + error.message()));
 }
 
 std::string numbered(std::size_t index, std::string_view ending) {

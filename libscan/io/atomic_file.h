@@ -16,8 +16,8 @@ void write_file(const std::filesystem::path& path, std::string_view content);
 
 // The whole file. Throws scan::Error (input) naming the file if it is missing, a directory or
 // unreadable, and scan::Error (resource) above `limit_bytes`.
-std::string read_file(const std::filesystem::path& path, std::size_t limit_bytes = std::size_t{1}
-                                                                                  << 34);
+std::string read_file(const std::filesystem::path& path,
+                      std::size_t limit_bytes = std::size_t{1} << 34);
 
 // Creates the folder and those above it where they are missing. Throws scan::Error (output) if that
 // cannot be done or a file stands there.

@@ -16,7 +16,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-int whole(JsonReader& reader, std::string_view key, long low, long high, const long* otherwise = nullptr) {
+int whole(JsonReader& reader, std::string_view key, long low, long high,
+          const long* otherwise = nullptr) {
   const long number = otherwise ? reader.integer(key, *otherwise) : reader.integer(key);
   if (number < low || number > high)
     reader.fail(key, "is " + std::to_string(number) + ", must be " + std::to_string(low) + " to " +
@@ -53,9 +54,17 @@ Camera read_camera(JsonReader reader) {
 }
 
 ordered_json to_json(const Camera& c) {
-  return {{"width_px", c.width_px}, {"height_px", c.height_px}, {"fx_px", c.fx_px}, {"fy_px", c.fy_px},
-          {"cx_px", c.cx_px},       {"cy_px", c.cy_px},         {"k1", c.k1},       {"k2", c.k2},
-          {"p1", c.p1},             {"p2", c.p2},               {"k3", c.k3}};
+  return {{"width_px", c.width_px},
+          {"height_px", c.height_px},
+          {"fx_px", c.fx_px},
+          {"fy_px", c.fy_px},
+          {"cx_px", c.cx_px},
+          {"cy_px", c.cy_px},
+          {"k1", c.k1},
+          {"k2", c.k2},
+          {"p1", c.p1},
+          {"p2", c.p2},
+          {"k3", c.k3}};
 }
 
 Sensor read_sensor(JsonReader reader) {
@@ -64,7 +73,8 @@ Sensor read_sensor(JsonReader reader) {
   sensor.offset_dn = reader.number("offset_dn", sensor.offset_dn);
   sensor.read_noise_e =
       not_negative(reader, "read_noise_e", reader.number("read_noise_e", sensor.read_noise_e));
-  sensor.full_well_e = positive(reader, "full_well_e", reader.number("full_well_e", sensor.full_well_e));
+  sensor.full_well_e =
+      positive(reader, "full_well_e", reader.number("full_well_e", sensor.full_well_e));
   const long bits = sensor.bits;
   sensor.bits = whole(reader, "bits", 1, 16, &bits);
   reader.finish();
@@ -156,7 +166,8 @@ PhaseCalibration read_phase_calibration(const std::filesystem::path& path) {
     calibration.sensor = read_sensor(reader.object("sensor"));
     calibration.frequencies_hz = reader.frequencies_hz("frequencies");
     if (calibration.frequencies_hz.empty()) reader.fail("frequencies", "is empty");
-    for (const double frequency : calibration.frequencies_hz) positive(reader, "frequencies", frequency);
+    for (const double frequency : calibration.frequencies_hz)
+      positive(reader, "frequencies", frequency);
     calibration.max_range_m =
         positive(reader, "max_range", reader.length_m("max_range", calibration.max_range_m));
     return calibration;
@@ -169,7 +180,8 @@ WaveformSetup read_waveform_calibration(const std::filesystem::path& path) {
     WaveformSetup setup;
     WaveformCalibration& calibration = setup.calibration;
     calibration.sensor = read_sensor(reader.object("sensor"));
-    calibration.sample_interval_s = positive(reader, "sample_interval", reader.time_s("sample_interval"));
+    calibration.sample_interval_s =
+        positive(reader, "sample_interval", reader.time_s("sample_interval"));
     calibration.window_start_s = reader.time_s("window_start", calibration.window_start_s);
     calibration.pulse_sigma_s = positive(reader, "pulse_sigma", reader.time_s("pulse_sigma"));
     setup.grid.rows = static_cast<std::uint32_t>(whole(reader, "rows", 0, largest, &zero));

@@ -11,6 +11,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/byte_order.h"
+#include "libscan/io/json_reader.h"
 
 namespace scan {
 namespace {
@@ -43,7 +44,9 @@ class Checker {
     const std::string bytes = read_file(path_);
     std::string_view text = bytes;
     if (text.substr(0, 4) == "glTF") {
-      const auto u32 = [&](std::size_t at) { return load<std::uint32_t>(bytes.data() + at, std::endian::little); };
+      const auto u32 = [&](std::size_t at) {
+        return load<std::uint32_t>(bytes.data() + at, std::endian::little);
+      };
       if (bytes.size() < 20 || u32(8) != bytes.size() || u32(12) > bytes.size() - 20)
         fail("the lengths of the GLB container are wrong");
       const std::size_t chunk = 20 + std::size_t{u32(12)};
@@ -53,8 +56,7 @@ class Checker {
         if (*binary_bytes_ > bytes.size() - chunk - 8) fail("the binary chunk ends early");
       }
     }
-    document_ = json::parse(text, nullptr, false);
-    if (document_.is_discarded()) fail("is not valid JSON");
+    document_ = parse_json(text, path_.string());
   }
 
   const json& list(const char* key) const {
@@ -67,7 +69,8 @@ class Checker {
     return *found;
   }
 
-  std::uint64_t whole(const json& object, const char* key, std::optional<std::uint64_t> otherwise) const {
+  std::uint64_t whole(const json& object, const char* key,
+                      std::optional<std::uint64_t> otherwise) const {
     const auto found = object.find(key);
     if (found == object.end() && otherwise) return *otherwise;
     if (found == object.end() || !found->is_number_unsigned() ||
@@ -92,20 +95,23 @@ class Checker {
       std::error_code error;
       if (!uri.starts_with("data:"))
         available = std::filesystem::file_size(path_.parent_path() / uri, error);
-      else if (comma == std::string::npos || uri.substr(0, comma).find("base64") == std::string::npos)
+      else if (comma == std::string::npos ||
+               uri.substr(0, comma).find("base64") == std::string::npos)
         fail("a data: uri must be base64");
       else
         available = (uri.size() - comma - 1) / 4 * 3;
       if (error) fail("buffer '" + uri.substr(0, 80) + "' cannot be read");
     }
     if (bytes > available)
-      fail("a buffer of " + std::to_string(bytes) + " bytes, there are " + std::to_string(available));
+      fail("a buffer of " + std::to_string(bytes) + " bytes, there are " +
+           std::to_string(available));
   }
 
   void check_view(const json& view) const {
     const json& buffers = list("buffers");
     check_index(view, "buffer", buffers.size(), true);
-    const std::uint64_t end = whole(view, "byteOffset", 0) + whole(view, "byteLength", std::nullopt);
+    const std::uint64_t end =
+        whole(view, "byteOffset", 0) + whole(view, "byteLength", std::nullopt);
     if (whole(view, "byteStride", 0) > 252) fail("byteStride is over 252");
     if (end > whole(buffers[view["buffer"].get<std::size_t>()], "byteLength", std::nullopt))
       fail("a bufferView ends behind its buffer");
@@ -115,7 +121,8 @@ class Checker {
     static const std::map<std::uint64_t, std::uint64_t> sizes = {{5120, 1}, {5121, 1}, {5122, 2},
                                                                  {5123, 2}, {5125, 4}, {5126, 4}};
     static const std::map<std::string, std::uint64_t> parts = {
-        {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+        {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4},
+        {"MAT2", 4},   {"MAT3", 9}, {"MAT4", 16}};
     const json& views = list("bufferViews");
     check_index(accessor, "bufferView", views.size(), true);
     if (accessor.contains("sparse")) fail("sparse accessors are not understood");
@@ -136,7 +143,8 @@ class Checker {
   }
 
   void check_mesh(const json& mesh) const {
-    if (!mesh.contains("primitives") || !mesh["primitives"].is_array()) fail("a mesh without primitives");
+    if (!mesh.contains("primitives") || !mesh["primitives"].is_array())
+      fail("a mesh without primitives");
     const std::size_t accessors = list("accessors").size();
     for (const json& primitive : mesh["primitives"]) {
       if (!primitive.is_object() || !primitive.contains("attributes") ||
@@ -174,7 +182,8 @@ class Checker {
       if (!node["children"].is_array()) fail("children is no list");
       for (const json& child : node["children"]) {
         if (!child.is_number_unsigned() || child.get<std::uint64_t>() >= nodes.size())
-          fail("a node names child " + child.dump() + ", there are " + std::to_string(nodes.size()));
+          fail("a node names child " + child.dump() + ", there are " +
+               std::to_string(nodes.size()));
         if (std::exchange(has_parent[child.get<std::size_t>()], 1)) fail("a node has two parents");
       }
     }
@@ -192,7 +201,8 @@ class Checker {
       ++reached;
       if (depth > 500) fail("nodes are nested deeper than 500");
       if (!nodes[node].contains("children")) continue;
-      for (const json& child : nodes[node]["children"]) open.emplace_back(child.get<std::size_t>(), depth + 1);
+      for (const json& child : nodes[node]["children"])
+        open.emplace_back(child.get<std::size_t>(), depth + 1);
     }
     if (reached != nodes.size()) fail("a node is its own ancestor");
   }

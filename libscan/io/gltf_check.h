@@ -7,8 +7,8 @@
 
 namespace scan {
 
-// Container, JSON, buffers, views, accessors, meshes and nodes: every index and range must be sound.
-// scan::Error (input) names file and place.
+// Container, JSON, buffers, views, accessors, meshes and nodes: every index and range must be
+// sound. scan::Error (input) names file and place.
 void check_gltf(const std::filesystem::path& path);
 
 }  // namespace scan

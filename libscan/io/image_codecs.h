@@ -21,7 +21,8 @@ Image<std::uint8_t> decode_jpeg_grey8(std::string_view bytes, const std::string&
 Image<float> decode_pfm(std::string_view bytes, const std::string& name);
 NumberArray decode_npy(std::string_view bytes, const std::string& name);
 
-// The first member of a zip archive whose name ends in `ending`, unpacked and checked against its CRC.
+// The first member of a zip archive whose name ends in `ending`, unpacked and checked against its
+// CRC.
 std::string first_zip_member(std::string_view bytes, std::string_view ending,
                              const std::string& name);
 

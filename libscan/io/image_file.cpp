@@ -13,8 +13,12 @@
 namespace scan {
 namespace {
 
-bool is_png(std::string_view bytes) { return bytes.substr(0, 4) == "\x89PNG"; }
-bool is_jpeg(std::string_view bytes) { return bytes.substr(0, 2) == "\xff\xd8"; }
+bool is_png(std::string_view bytes) {
+  return bytes.substr(0, 4) == "\x89PNG";
+}
+bool is_jpeg(std::string_view bytes) {
+  return bytes.substr(0, 2) == "\xff\xd8";
+}
 
 }  // namespace
 
@@ -46,7 +50,8 @@ Image<float> read_float_image(const std::filesystem::path& path) {
   if (ending == ".pfm") return decode_pfm(read_file(path), path.string());
   const NumberArray array = read_npy(path);
   if (array.shape.size() != 2)
-    throw Error(Trouble::input, path.string() + ": an image needs an array of two dimensions, it has " +
+    throw Error(Trouble::input, path.string() +
+                                    ": an image needs an array of two dimensions, it has " +
                                     std::to_string(array.shape.size()));
   check_image_size(array.shape[1], array.shape[0], path.string());
   Image<float> image(static_cast<int>(array.shape[1]), static_cast<int>(array.shape[0]));

@@ -13,8 +13,8 @@
 
 namespace scan {
 
-// Readers throw scan::Error: input for what is broken or of another kind, resource above max_image_px;
-// both before anything is allocated. Writers: output.
+// Readers throw scan::Error: input for what is broken or of another kind, resource above
+// max_image_px; both before anything is allocated. Writers: output.
 inline constexpr std::size_t max_image_px = std::size_t{1} << 27;
 
 using Colour = std::array<std::uint8_t, 3>;
@@ -28,13 +28,13 @@ void write_png(const std::filesystem::path& path, const Image<std::uint16_t>& im
 void write_png(const std::filesystem::path& path, const Image<Colour>& image);
 std::string png_bytes(const Image<Colour>& image);  // for pages that carry their pictures
 
-// .pfm (bottom row first on disk, unknown = infinity) or a two-dimensional .npy/.npz array (unknown =
-// NaN). Unknown becomes NaN.
+// .pfm (bottom row first on disk, unknown = infinity) or a two-dimensional .npy/.npz array (unknown
+// = NaN). Unknown becomes NaN.
 Image<float> read_float_image(const std::filesystem::path& path);
 void write_pfm(const std::filesystem::path& path, const Image<float>& image);
 
-// NumPy arrays of any shape in C order, of floats (16, 32, 64 bits), integers or booleans, either byte
-// order; npz (stored or deflated): the first array.
+// NumPy arrays of any shape in C order, of floats (16, 32, 64 bits), integers or booleans, either
+// byte order; npz (stored or deflated): the first array.
 struct NumberArray {
   std::vector<std::size_t> shape;
   std::vector<double> values;

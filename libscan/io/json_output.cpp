@@ -129,9 +129,9 @@ ordered_json report_json(const CommandReport& report) {
     total += value;
   }
   seconds["total"] = number(total);
-  ordered_json object = {{"command", report.command},   {"version", report.version},
-                         {"status", report.status},     {"warnings", report.warnings},
-                         {"seconds", seconds},          {"peak_mib", number(peak_memory_mib())},
+  ordered_json object = {{"command", report.command}, {"version", report.version},
+                         {"status", report.status},   {"warnings", report.warnings},
+                         {"seconds", seconds},        {"peak_mib", number(peak_memory_mib())},
                          {"threads", report.threads}};
   if (report.seed) object["seed"] = *report.seed;
   return object;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// Results as JSON with stable keys. Numbers read back to the bit, what is not finite is null, poses are
-// 4x4. No object here holds seconds but `report_json`: the files of a run do not depend on the machine.
+// Results as JSON with stable keys. Numbers read back to the bit, what is not finite is null, poses
+// are 4x4. No object here holds seconds but `report_json`: the files of a run do not depend on the
+// machine.
 #pragma once
 
 #include <filesystem>
@@ -19,27 +20,28 @@
 
 namespace scan {
 
-// `file`, `rays` (of the grid; else points and misses together), `points`, `misses`: {reason: count}.
+// `file`, `rays` (of the grid; else points and misses together), `points`, `misses`: {reason:
+// count}.
 nlohmann::ordered_json scan_json(const std::string& file, const Scan& scan);
 
-// One pair: `target_from_source`, `stop`, `iterations`, `pairs`, `inlier_fraction_of_source`, `rms_m`,
-// `information`, `weak_directions`, `invalid_points`.
+// One pair: `target_from_source`, `stop`, `iterations`, `pairs`, `inlier_fraction_of_source`,
+// `rms_m`, `information`, `weak_directions`, `invalid_points`.
 nlohmann::ordered_json icp_json(const IcpResult& result);
 
 // alignment.json: `scans`: [{`file`, `world_from_scan`, `stop`, `iterations`, `rms_m`,
-// `inlier_fraction_of_source`, `weak_directions`}], `method`, `search`, `stop`, `rounds`, `pairs_used`.
-// Throws scan::Error (usage) unless there is one file for each scan.
+// `inlier_fraction_of_source`, `weak_directions`}], `method`, `search`, `stop`, `rounds`,
+// `pairs_used`. Throws scan::Error (usage) unless there is one file for each scan.
 nlohmann::ordered_json alignment_json(std::span<const std::string> files,
                                       const MultiviewResult& result, const IcpOptions& options);
 
 // reconstruction.json: `method`, `depth` (null for methods without), `vertices`, `triangles`,
-// `components`, `watertight`, `genus`, `relative_residual`, `iterations`, `unknowns`, `finest_cell_m`,
-// `stop`, `invalid_points`.
+// `components`, `watertight`, `genus`, `relative_residual`, `iterations`, `unknowns`,
+// `finest_cell_m`, `stop`, `invalid_points`.
 nlohmann::ordered_json surface_json(const std::string& method, std::optional<int> depth,
                                     const SurfaceResult& result);
 
-// `name`, `value`, `unit`, `over`, `count`, `limit`, `relation`, `pass`, `reason`; limit, relation and
-// reason are null without a limit.
+// `name`, `value`, `unit`, `over`, `count`, `limit`, `relation`, `pass`, `reason`; limit, relation
+// and reason are null without a limit.
 nlohmann::ordered_json measurement_json(const Measurement& measurement);
 nlohmann::ordered_json verdict_json(const Verdict& verdict);  // `measurements`, `pass`
 

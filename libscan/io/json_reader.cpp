@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "libscan/core/error.h"
 #include "libscan/core/units.h"
-#include "libscan/io/atomic_file.h"
 
 namespace scan {
 namespace {
@@ -20,6 +20,12 @@ const Units length_units = {{"_m", 1}, {"_mm", 1e-3}, {"_um", 1e-6}};
 const Units angle_units = {{"_rad", 1}, {"_deg", rad_from_deg(1)}};
 const Units time_units = {{"_s", 1}, {"_ms", 1e-3}, {"_us", 1e-6}, {"_ns", 1e-9}};
 const Units frequency_units = {{"_hz", 1}, {"_mhz", 1e6}};
+
+// A value as a message shows it.
+std::string shown(const json& value) {
+  const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+}
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -85,7 +91,7 @@ bool JsonReader::has_quantity(std::string_view name) const {
 double JsonReader::number(std::string_view key) {
   const json* found = find(key);
   if (!found) fail(key, "is missing");
-  if (!found->is_number()) fail(key, "must be a number, is " + found->dump());
+  if (!found->is_number()) fail(key, "must be a number, is " + shown(*found));
   const double number = found->get<double>();
   if (!std::isfinite(number)) fail(key, "must be finite");
   return number;
@@ -98,7 +104,9 @@ double JsonReader::number(std::string_view key, double otherwise) {
 long JsonReader::integer(std::string_view key) {
   const json* found = find(key);
   if (!found) fail(key, "is missing");
-  if (!found->is_number_integer()) fail(key, "must be a whole number, is " + found->dump());
+  if (!found->is_number_integer()) fail(key, "must be a whole number, is " + shown(*found));
+  if (found->is_number_unsigned() && !std::in_range<long>(found->get<std::uint64_t>()))
+    fail(key, "is " + shown(*found) + ", over the range of 64 bits");
   return found->get<long>();
 }
 
@@ -109,14 +117,14 @@ long JsonReader::integer(std::string_view key, long otherwise) {
 bool JsonReader::boolean(std::string_view key, bool otherwise) {
   const json* found = find(key);
   if (!found) return otherwise;
-  if (!found->is_boolean()) fail(key, "must be true or false, is " + found->dump());
+  if (!found->is_boolean()) fail(key, "must be true or false, is " + shown(*found));
   return found->get<bool>();
 }
 
 std::string JsonReader::text(std::string_view key) {
   const json* found = find(key);
   if (!found) fail(key, "is missing");
-  if (!found->is_string()) fail(key, "must be a text, is " + found->dump());
+  if (!found->is_string()) fail(key, "must be a text, is " + shown(*found));
   return found->get<std::string>();
 }
 
@@ -127,11 +135,11 @@ std::string JsonReader::text(std::string_view key, const std::string& otherwise)
 std::vector<double> JsonReader::numbers(std::string_view key) {
   const json* found = find(key);
   if (!found) fail(key, "is missing");
-  if (!found->is_array()) fail(key, "must be a list of numbers, is " + found->dump());
+  if (!found->is_array()) fail(key, "must be a list of numbers, is " + shown(*found));
   std::vector<double> list;
   for (const json& entry : *found) {
     if (!entry.is_number() || !std::isfinite(entry.get<double>()))
-      fail(key, "must hold finite numbers only, has " + entry.dump());
+      fail(key, "must hold finite numbers only, has " + shown(entry));
     list.push_back(entry.get<double>());
   }
   return list;
@@ -173,7 +181,9 @@ double JsonReader::angle_rad(std::string_view name) {
 double JsonReader::angle_rad(std::string_view name, double otherwise_rad) {
   return quantity(name, angle_units, &otherwise_rad);
 }
-double JsonReader::time_s(std::string_view name) { return quantity(name, time_units, nullptr); }
+double JsonReader::time_s(std::string_view name) {
+  return quantity(name, time_units, nullptr);
+}
 double JsonReader::time_s(std::string_view name, double otherwise_s) {
   return quantity(name, time_units, &otherwise_s);
 }
@@ -262,19 +272,6 @@ void JsonReader::finish() const {
         nearest_word(key, std::vector<std::string>(known_.begin(), known_.end()));
     throw Error(Trouble::input, place_ + "/" + key + ": unknown key",
                 near.empty() ? "" : "did you mean '" + near + "'?");
-  }
-}
-
-json read_json(const std::filesystem::path& path) {
-  const std::string text = read_file(path);
-  try {
-    return json::parse(text, nullptr, true, true);
-  } catch (const json::parse_error& error) {
-    const std::size_t end = std::min<std::size_t>(error.byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(end), '\n');
-    throw Error(Trouble::input, path.string() + ": not valid JSON near line " +
-                                    std::to_string(line) + " (byte " + std::to_string(error.byte) +
-                                    ")");
   }
 }
 

@@ -18,9 +18,9 @@
 namespace scan {
 
 // A view on one JSON object. Each getter marks its key as known; `finish()` refuses what is left.
-// Lengths carry their unit in the key: length_m("radius") reads radius_mm, radius_m or radius_um and
-// returns metres; angle_rad reads _deg or _rad; time_s reads _s, _ms, _us or _ns; frequency_hz reads
-// _hz or _mhz. Without a default the key is required.
+// Lengths carry their unit in the key: length_m("radius") reads radius_mm, radius_m or radius_um
+// and returns metres; angle_rad reads _deg or _rad; time_s reads _s, _ms, _us or _ns; frequency_hz
+// reads _hz or _mhz. Without a default the key is required.
 class JsonReader {
  public:
   // `place` is how messages name this object: a file name, then a JSON pointer.
@@ -79,12 +79,13 @@ class JsonReader {
   std::set<std::string, std::less<>> known_;
 };
 
-// Parses a file; comments are allowed, rubbish behind the value is not. scan::Error (input) with
-// line and column otherwise.
+// Parses a file; comments are allowed, rubbish behind the value is not, nor numbers beyond double
+// or more than 256 levels. scan::Error (input) with the line otherwise.
 nlohmann::json read_json(const std::filesystem::path& path);
+nlohmann::json parse_json(std::string_view text, const std::string& name);
 
-// The member of `words` nearest to `word` (edit distance at most a third of its length, at least 1),
-// or empty.
+// The member of `words` nearest to `word` (edit distance at most a third of its length, at least
+// 1), or empty.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
 
 }  // namespace scan

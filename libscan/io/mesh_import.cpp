@@ -38,12 +38,11 @@ void append(Mesh& mesh, const aiMesh& part, const std::string& name) {
 
 Mesh import(const std::filesystem::path& path) {
   Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,  // so that vertices weld by position alone
-                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                  aiComponent_COLORS | aiComponent_TEXCOORDS |
-                                  aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS |
-                                  aiComponent_MATERIALS);
+  importer.SetPropertyInteger(
+      AI_CONFIG_PP_RVC_FLAGS,  // so that vertices weld by position alone
+      aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
+          aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
+          aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_MATERIALS);
   const aiScene* scene = importer.ReadFile(
       path.string(), aiProcess_RemoveComponent | aiProcess_Triangulate |
                          aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);

@@ -94,7 +94,8 @@ void read_off_faces(MeshLines& lines, std::size_t faces, Mesh& mesh) {
   for (std::size_t i = 0; i < faces; ++i) {
     std::string_view words = lines.require("face " + std::to_string(i));
     const auto count = lines.whole<std::uint32_t>(take_word(words), "number of corners");
-    if (count > words.size()) lines.fail("the line ends before its " + std::to_string(count) + " corners");
+    if (count > words.size())
+      lines.fail("the line ends before its " + std::to_string(count) + " corners");
     std::vector<std::uint32_t> corners;
     for (std::uint32_t k = 0; k < count; ++k) {
       const auto corner = lines.whole<std::uint32_t>(take_word(words), "vertex");
@@ -132,7 +133,8 @@ Mesh parse_off(std::string_view text, const std::string& name) {
   std::string_view words = lines.require("'OFF'");
   const std::size_t keyword_at = words.find("OFF");
   const std::string_view prefix = words.substr(0, keyword_at);
-  if (keyword_at == std::string_view::npos || prefix.find_first_not_of(" STCN") != std::string_view::npos)
+  if (keyword_at == std::string_view::npos ||
+      prefix.find_first_not_of(" STCN") != std::string_view::npos)
     lines.fail("is not an OFF file (its first line is not 'OFF')");
   words.remove_prefix(keyword_at + 3);  // some writers put the counts right behind
   std::string_view first = words;
@@ -158,7 +160,8 @@ std::string obj_text(const Mesh& mesh) {
   }
   for (const Triangle& triangle : mesh.triangles) {
     text += 'f';
-    for (const std::uint32_t corner : triangle) append_number(text += ' ', std::uint64_t{corner} + 1);
+    for (const std::uint32_t corner : triangle)
+      append_number(text += ' ', std::uint64_t{corner} + 1);
     text += '\n';
   }
   return text;

@@ -11,9 +11,9 @@
 
 namespace scan {
 
-// Polygons become fans; what is no geometry (materials, texture, normals, lines) is left out. An STL,
-// text or binary, gets its equal vertices welded and loses triangles that are a line or a point then.
-// scan::Error (input) names `name` and line, or the byte count that does not fit.
+// Polygons become fans; what is no geometry (materials, texture, normals, lines) is left out. An
+// STL, text or binary, gets its equal vertices welded and loses triangles that are a line or a
+// point then. scan::Error (input) names `name` and line, or the byte count that does not fit.
 Mesh parse_obj(std::string_view text, const std::string& name);
 Mesh parse_off(std::string_view text, const std::string& name);
 Mesh parse_stl(std::string_view bytes, const std::string& name);

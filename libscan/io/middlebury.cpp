@@ -16,7 +16,8 @@ namespace {
 
 class Entries {
  public:
-  explicit Entries(const std::filesystem::path& path) : name_(path.string()), text_(read_file(path)) {
+  explicit Entries(const std::filesystem::path& path)
+      : name_(path.string()), text_(read_file(path)) {
     Lines lines(text_);
     while (const auto line = lines.next()) {
       const std::size_t equals = line->find('=');
@@ -34,7 +35,8 @@ class Entries {
     std::string_view words = text_of(key);
     const std::string_view word = take_word(words);
     const auto number = number_from<double>(word);
-    if (!number || !std::isfinite(*number)) fail(key, "'" + std::string(word) + "' is not a number");
+    if (!number || !std::isfinite(*number))
+      fail(key, "'" + std::string(word) + "' is not a number");
     return *number;
   }
 
@@ -50,7 +52,8 @@ class Entries {
     std::array<double, 9> entries;
     for (double& entry : entries) {
       const auto number = number_from<double>(take_word(words, "[];,"));
-      if (!number || !std::isfinite(*number)) fail(key, "must be a 3x3 matrix [f 0 cx; 0 f cy; 0 0 1]");
+      if (!number || !std::isfinite(*number))
+        fail(key, "must be a 3x3 matrix [f 0 cx; 0 f cy; 0 0 1]");
       entry = *number;
     }
     return entries;
@@ -72,7 +75,8 @@ class Entries {
 StereoCalibration read_middlebury_calibration(const std::filesystem::path& path) {
   const Entries entries(path);
   const auto left = entries.matrix("cam0"), right = entries.matrix("cam1");
-  if (!(left[0] > 0)) entries.fail("cam0", "focal length " + shortest(left[0]) + ", must be positive");
+  if (!(left[0] > 0))
+    entries.fail("cam0", "focal length " + shortest(left[0]) + ", must be positive");
   if (left[0] != right[0] || left[0] != left[4])
     entries.fail("cam1", "a rectified pair has one focal length");
   StereoCalibration calibration;

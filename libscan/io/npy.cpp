@@ -43,7 +43,8 @@ std::vector<std::size_t> parse_shape(std::string_view text, const std::string& n
   std::vector<std::size_t> shape;
   for (auto word = take_word(text, ","); !word.empty(); word = take_word(text, ",")) {
     const auto extent = number_from<std::size_t>(word);
-    if (!extent) throw Error(Trouble::input, name + ": npy header: 'shape' holds '" + std::string(word) + "'");
+    if (!extent)
+      throw Error(Trouble::input, name + ": npy header: 'shape' holds '" + std::string(word) + "'");
     shape.push_back(*extent);
   }
   return shape;
@@ -84,7 +85,8 @@ Type parse_type(std::string_view text, const std::string& name) {
   const std::string known = " f2 f4 f8 i1 i2 i4 i8 u1 u2 u4 u8 b1 ";
   const bool is_quoted = word.size() == 5 && word[0] == '\'' && word[4] == '\'';
   if (!is_quoted || known.find(" " + word.substr(2, 2) + " ") == std::string::npos)
-    throw Error(Trouble::input, name + ": npy type " + word.substr(0, 40) + " is not one of" + known);
+    throw Error(Trouble::input,
+                name + ": npy type " + word.substr(0, 40) + " is not one of" + known);
   return {word[1] == '>' ? std::endian::big : std::endian::little, word.substr(2, 2),
           static_cast<std::size_t>(word[3] - '0')};
 }
@@ -121,7 +123,8 @@ std::string npy_header(std::string_view type, const std::vector<std::size_t>& sh
   std::string text = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (" +
                      extents + "), }";
   const std::size_t fixed = magic.size() + 4;  // version and length
-  text.resize((fixed + text.size() + 1 + 63) / 64 * 64 - fixed - 1, ' ');  // data aligned to 64 bytes
+  text.resize((fixed + text.size() + 1 + 63) / 64 * 64 - fixed - 1,
+              ' ');  // data aligned to 64 bytes
   text += '\n';
   std::string header(magic);
   header += '\x01';
@@ -141,12 +144,16 @@ void write_array(const std::filesystem::path& path, std::string_view type,
 }  // namespace
 
 NumberArray decode_npy(std::string_view bytes, const std::string& name) {
-  const auto fail = [&](const std::string& what) { throw Error(Trouble::input, name + ": " + what); };
-  if (bytes.substr(0, magic.size()) != magic || bytes.size() < 12) fail("is not a NumPy array file");
+  const auto fail = [&](const std::string& what) {
+    throw Error(Trouble::input, name + ": " + what);
+  };
+  if (bytes.substr(0, magic.size()) != magic || bytes.size() < 12)
+    fail("is not a NumPy array file");
   const int version = bytes[6];
   if (version < 1 || version > 3) fail("npy version " + std::to_string(version) + " is unknown");
-  const std::size_t length = version == 1 ? load<std::uint16_t>(bytes.data() + 8, std::endian::little)
-                                          : load<std::uint32_t>(bytes.data() + 8, std::endian::little);
+  const std::size_t length = version == 1
+                                 ? load<std::uint16_t>(bytes.data() + 8, std::endian::little)
+                                 : load<std::uint32_t>(bytes.data() + 8, std::endian::little);
   bytes.remove_prefix(version == 1 ? 10 : 12);
   if (length > bytes.size()) fail("the file ends inside the npy header");
   const std::string_view header = bytes.substr(0, length);

@@ -10,8 +10,8 @@
 namespace scan {
 
 // x y z, normal_x normal_y normal_z and intensity where they are there, in whatever number type the
-// file has; ascii, binary and binary_compressed. Points that are not finite are kept (read_scan drops
-// and counts them). scan::Error (input) names file, header line or field.
+// file has; ascii, binary and binary_compressed. Points that are not finite are kept (read_scan
+// drops and counts them). scan::Error (input) names file, header line or field.
 PointCloud read_pcd(const std::filesystem::path& path);
 
 // Binary, doubles: coordinates come back to the bit. Sigma and covariances are left out.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// Portable float maps: "Pf", width, height, a scale whose sign tells the byte order, rows from below.
+// Portable float maps: "Pf", width, height, a scale whose sign tells the byte order, rows from
+// below.
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -17,7 +18,8 @@ namespace {
 // The next word of the header and the one blank behind it.
 std::string_view header_word(std::string_view& rest) {
   const std::size_t begin = rest.find_first_not_of(" \t\r\n");
-  const std::size_t end = begin == std::string_view::npos ? begin : rest.find_first_of(" \t\r\n", begin);
+  const std::size_t end =
+      begin == std::string_view::npos ? begin : rest.find_first_of(" \t\r\n", begin);
   if (end == std::string_view::npos) return {};
   const std::string_view word = rest.substr(begin, end - begin);
   rest.remove_prefix(end + 1);
@@ -27,7 +29,9 @@ std::string_view header_word(std::string_view& rest) {
 }  // namespace
 
 Image<float> decode_pfm(std::string_view bytes, const std::string& name) {
-  const auto fail = [&](const std::string& what) { throw Error(Trouble::input, name + ": " + what); };
+  const auto fail = [&](const std::string& what) {
+    throw Error(Trouble::input, name + ": " + what);
+  };
   const std::string_view kind = header_word(bytes);
   if (kind == "PF") fail("is a colour PFM, one channel ('Pf') is needed");
   if (kind != "Pf") fail("is not a PFM image (its first word is not 'Pf')");

@@ -13,8 +13,8 @@
 namespace scan {
 namespace {
 
-constexpr std::array<std::string_view, ply_type_count> names = {
-    "char", "uchar", "short", "ushort", "int", "uint", "float", "double"};
+constexpr std::array<std::string_view, ply_type_count> names = {"char", "uchar", "short", "ushort",
+                                                                "int",  "uint",  "float", "double"};
 constexpr std::array<std::string_view, ply_type_count> sized_names = {
     "int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
 constexpr std::array<std::size_t, ply_type_count> sizes = {1, 1, 2, 2, 4, 4, 4, 8};
@@ -59,9 +59,7 @@ class HeaderParser {
     const std::size_t first = rest_.find_first_of("\r\n");
     if (rest_.substr(0, 3) != "ply" || first == std::string_view::npos)
       throw Error(Trouble::input, name_ + ": is not a PLY file (its first line is not 'ply')");
-    line_end_ = rest_[first] == '\n'                     ? "\n"
-                : rest_.substr(first, 2) == "\r\n" ? "\r\n"
-                                                         : "\r";
+    line_end_ = rest_[first] == '\n' ? "\n" : rest_.substr(first, 2) == "\r\n" ? "\r\n" : "\r";
   }
 
   std::string_view next_line() {
@@ -138,7 +136,8 @@ class HeaderParser {
     if (type == "list") {
       property.is_list = true;
       length_type = parse_type(take_word(words));
-      if (length_type >= first_float_type) fail("the length of a list must be of a whole-number type");
+      if (length_type >= first_float_type)
+        fail("the length of a list must be of a whole-number type");
       type = take_word(words);
     }
     property.values = empty_values(parse_type(type), std::make_index_sequence<ply_type_count>());
@@ -159,9 +158,8 @@ class HeaderParser {
 };
 
 bool is_one_word(const std::string& name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return c > ' ' && c != 127;
-  });
+  return !name.empty() &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return c > ' ' && c != 127; });
 }
 
 void check_names(const Ply& ply) {
@@ -181,8 +179,12 @@ void check_names(const Ply& ply) {
 
 }  // namespace
 
-std::size_t ply_type_size(std::size_t type) { return sizes[type]; }
-std::string_view ply_type_name(std::size_t type) { return names[type]; }
+std::size_t ply_type_size(std::size_t type) {
+  return sizes[type];
+}
+std::string_view ply_type_name(std::size_t type) {
+  return names[type];
+}
 
 PlyHeader parse_ply_header(std::string_view content, const std::string& name) {
   return HeaderParser(content, name).parse();

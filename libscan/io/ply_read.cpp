@@ -55,10 +55,10 @@ void check_counts(const PlyHeader& header, std::size_t data_bytes, const std::st
       throw Error(Trouble::input, name + ": element '" + element.name + "' has " +
                                       std::to_string(element.count) + " rows but no property");
     if (element.count > left / least)
-      throw Error(Trouble::input,
-                  name + ": element '" + element.name + "': the header promises " +
-                      std::to_string(element.count) + " rows of at least " + std::to_string(least) +
-                      " bytes, the file has " + std::to_string(data_bytes) + " bytes of data");
+      throw Error(Trouble::input, name + ": element '" + element.name + "': the header promises " +
+                                      std::to_string(element.count) + " rows of at least " +
+                                      std::to_string(least) + " bytes, the file has " +
+                                      std::to_string(data_bytes) + " bytes of data");
     left -= element.count * least;
   }
 }
@@ -167,12 +167,18 @@ std::uint32_t list_length(Rows& rows, const Place& place, std::size_t length_typ
     return static_cast<std::uint32_t>(length);
   };
   switch (length_type) {
-    case 0: return whole(std::int8_t{});
-    case 1: return whole(std::uint8_t{});
-    case 2: return whole(std::int16_t{});
-    case 3: return whole(std::uint16_t{});
-    case 4: return whole(std::int32_t{});
-    default: return whole(std::uint32_t{});
+    case 0:
+      return whole(std::int8_t{});
+    case 1:
+      return whole(std::uint8_t{});
+    case 2:
+      return whole(std::int16_t{});
+    case 3:
+      return whole(std::uint16_t{});
+    case 4:
+      return whole(std::int32_t{});
+    default:
+      return whole(std::uint32_t{});
   }
 }
 
@@ -226,14 +232,15 @@ Ply parse_ply(std::string_view content, const std::string& name) {
     TextRows rows(data);
     read_rows(rows, header, name);
   } else {
-    BinaryRows rows(data, header.encoding == PlyEncoding::binary_little_endian
-                              ? std::endian::little
-                              : std::endian::big);
+    BinaryRows rows(data, header.encoding == PlyEncoding::binary_little_endian ? std::endian::little
+                                                                               : std::endian::big);
     read_rows(rows, header, name);
   }
   return std::move(header.empty);
 }
 
-Ply read_ply(const std::filesystem::path& path) { return parse_ply(read_file(path), path.string()); }
+Ply read_ply(const std::filesystem::path& path) {
+  return parse_ply(read_file(path), path.string());
+}
 
 }  // namespace scan

@@ -48,7 +48,8 @@ const PlyElement& vertices_of(const Ply& ply, const std::filesystem::path& path)
   for (const char* name : position_names) {
     const PlyProperty* property = vertex->find(name);
     if (!property || property->is_list)
-      throw Error(Trouble::input, path.string() + ": element 'vertex' has no property '" + name + "'");
+      throw Error(Trouble::input,
+                  path.string() + ": element 'vertex' has no property '" + name + "'");
   }
   return *vertex;
 }

@@ -21,14 +21,17 @@ std::size_t entries_of(const PlyProperty& property) {
 void check_lengths(const PlyElement& element) {
   for (const PlyProperty& property : element.properties) {
     const std::size_t rows = property.is_list ? property.lengths.size() : entries_of(property);
-    const std::string place = "ply: element '" + element.name + "', property '" + property.name + "'";
+    const std::string place =
+        "ply: element '" + element.name + "', property '" + property.name + "'";
     if (rows != element.count)
       throw Error(Trouble::input, place + ": " + std::to_string(rows) + " rows, the element has " +
                                       std::to_string(element.count));
-    const auto total = std::accumulate(property.lengths.begin(), property.lengths.end(), std::size_t{0});
+    const auto total =
+        std::accumulate(property.lengths.begin(), property.lengths.end(), std::size_t{0});
     if (property.is_list && total != entries_of(property))
       throw Error(Trouble::input, place + ": its lengths add up to " + std::to_string(total) +
-                                      ", it has " + std::to_string(entries_of(property)) + " values");
+                                      ", it has " + std::to_string(entries_of(property)) +
+                                      " values");
   }
 }
 
@@ -94,7 +97,8 @@ std::string ply_bytes(const Ply& ply, PlyEncoding encoding) {
   for (const PlyElement& element : ply.elements) {
     check_lengths(element);
     auto& types = length_types.emplace_back();
-    for (const PlyProperty& property : element.properties) types.push_back(length_type_of(property));
+    for (const PlyProperty& property : element.properties)
+      types.push_back(length_type_of(property));
   }
   std::string bytes = ply_header_text(ply, encoding, length_types);
   Sink sink{bytes, encoding};

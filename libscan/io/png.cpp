@@ -124,7 +124,8 @@ Decoded decode(std::string_view file, Wanted wanted, const std::string& name) {
   const auto height = png_get_image_height(reader.png, reader.info);
   check_image_size(width, height, name);
   // stored bytes, before any transform enlarges them
-  check_packed_size(std::uint64_t{png_get_rowbytes(reader.png, reader.info)} * height, file.size(), name);
+  check_packed_size(std::uint64_t{png_get_rowbytes(reader.png, reader.info)} * height, file.size(),
+                    name);
   const int colour = png_get_color_type(reader.png, reader.info);
   if (wanted == Wanted::stored_grey_16 && colour != PNG_COLOR_TYPE_GRAY)
     throw Error(Trouble::input, name + ": has colours or transparency, one grey channel is needed");
@@ -206,8 +207,9 @@ Image<std::uint8_t> decode_png_grey8(std::string_view bytes, const std::string& 
   const auto* at = reinterpret_cast<const std::uint8_t*>(decoded.bytes.data());
   for (std::uint8_t& pixel : image.pixels) {
     // ITU-R BT.601 weights in thousandths, rounded to nearest
-    pixel = channels == 1 ? at[0]
-                          : static_cast<std::uint8_t>((299 * at[0] + 587 * at[1] + 114 * at[2] + 500) / 1000);
+    pixel = channels == 1
+                ? at[0]
+                : static_cast<std::uint8_t>((299 * at[0] + 587 * at[1] + 114 * at[2] + 500) / 1000);
     at += channels;
   }
   return image;

@@ -42,8 +42,8 @@ std::string place_of(const std::string& file, const Line& line) {
 double number_at(const Line& line, std::size_t word, const std::string& file) {
   const auto number = number_from<double>(line.words[word]);
   if (!number || !std::isfinite(*number))
-    throw Error(Trouble::input, place_of(file, line) + ", word " + std::to_string(word + 1) + ": '" +
-                                    std::string(line.words[word].substr(0, 40)) +
+    throw Error(Trouble::input, place_of(file, line) + ", word " + std::to_string(word + 1) +
+                                    ": '" + std::string(line.words[word].substr(0, 40)) +
                                     "' is not a finite number");
   return *number;
 }
@@ -93,8 +93,8 @@ std::vector<NamedPose> parse_matrices(const std::vector<Line>& lines, const std:
     Eigen::Matrix4d matrix;
     for (int row = 0; row < 4; ++row, ++at) {
       if (at == lines.size())
-        throw Error(Trouble::input, file + ": ends inside a 4x4 matrix, after row " +
-                                        std::to_string(row));
+        throw Error(Trouble::input,
+                    file + ": ends inside a 4x4 matrix, after row " + std::to_string(row));
       if (lines[at].words.size() != 4)
         throw Error(Trouble::input, place_of(file, lines[at]) + ": has " +
                                         std::to_string(lines[at].words.size()) +
@@ -118,7 +118,8 @@ std::vector<NamedPose> parse_conf(const std::vector<Line>& lines, const std::str
     std::array<double, 7> v;
     for (std::size_t i = 0; i < 7; ++i) v[i] = number_at(line, i + 2, file);
     const Eigen::Matrix3d rotation = rotation_of({v[3], v[4], v[5], v[6]}, place_of(file, line));
-    poses.push_back({std::string(line.words[1]), make_pose(rotation.transpose(), {v[0], v[1], v[2]})});
+    poses.push_back(
+        {std::string(line.words[1]), make_pose(rotation.transpose(), {v[0], v[1], v[2]})});
   }
   return poses;
 }
@@ -128,7 +129,8 @@ std::vector<NamedPose> parse_alignment(const std::filesystem::path& path) {
   JsonReader reader(document, path.string());
   std::vector<NamedPose> poses;
   for (JsonReader& entry : reader.objects("scans")) {
-    const Pose pose = pose_from_json(entry.value("world_from_scan"), entry.place() + "/world_from_scan");
+    const Pose pose =
+        pose_from_json(entry.value("world_from_scan"), entry.place() + "/world_from_scan");
     poses.push_back({entry.text("file"), pose});
   }
   return poses;
@@ -144,7 +146,8 @@ std::vector<NamedPose> parse_lines(const std::vector<Line>& lines, const std::st
   std::vector<NamedPose> poses;
   for (const Line& line : lines) {
     if (line.words.size() != words)
-      throw Error(Trouble::input, place_of(file, line) + ": has " + std::to_string(line.words.size()) +
+      throw Error(Trouble::input, place_of(file, line) + ": has " +
+                                      std::to_string(line.words.size()) +
                                       " numbers, the lines before have " + std::to_string(words));
     poses.push_back(words == 8 ? parse_tum(line, file) : parse_kitti(line, poses.size(), file));
   }
@@ -164,7 +167,8 @@ Pose pose_from_matrix(const Eigen::Matrix4d& matrix, const std::string& place) {
   if (!matrix.allFinite()) throw Error(Trouble::input, place + ": the matrix is not finite");
   if ((matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).norm() > 1e-9)
     throw Error(Trouble::input, place + ": the last row of the matrix must be 0 0 0 1");
-  return make_pose(rotation_near(matrix.topLeftCorner<3, 3>(), place), matrix.topRightCorner<3, 1>());
+  return make_pose(rotation_near(matrix.topLeftCorner<3, 3>(), place),
+                   matrix.topRightCorner<3, 1>());
 }
 
 std::vector<NamedPose> read_poses(const std::filesystem::path& path) {
@@ -175,7 +179,8 @@ std::vector<NamedPose> read_poses(const std::filesystem::path& path) {
   } else {
     const std::string text = read_file(path);
     const std::vector<Line> lines = lines_of(text);
-    const bool is_conf = !lines.empty() && (lines[0].words[0] == "bmesh" || lines[0].words[0] == "camera");
+    const bool is_conf =
+        !lines.empty() && (lines[0].words[0] == "bmesh" || lines[0].words[0] == "camera");
     if (!lines.empty())
       poses = ending == ".conf" || is_conf ? parse_conf(lines, path.string())
                                            : parse_lines(lines, path.string());

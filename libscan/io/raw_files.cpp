@@ -22,7 +22,8 @@ std::string tap_name(std::size_t frequency, std::size_t tap) {
 }
 
 template <class Pixel>
-void check_size(const Image<Pixel>& image, int width, int height, const std::filesystem::path& path) {
+void check_size(const Image<Pixel>& image, int width, int height,
+                const std::filesystem::path& path) {
   if (image.width == width && image.height == height) return;
   throw Error(Trouble::input, path.string() + ": is " + std::to_string(image.width) + " x " +
                                   std::to_string(image.height) + " px, the calibration says " +
@@ -33,9 +34,9 @@ void check_bits(const std::vector<std::uint16_t>& numbers, const Sensor& sensor,
                 const std::filesystem::path& path) {
   const auto largest = std::max_element(numbers.begin(), numbers.end());
   if (largest == numbers.end() || *largest < 1u << sensor.bits) return;
-  throw Error(Trouble::input, path.string() + ": holds " + std::to_string(*largest) + ", a sensor of " +
-                                  std::to_string(sensor.bits) + " bits ends at " +
-                                  std::to_string((1u << sensor.bits) - 1));
+  throw Error(Trouble::input, path.string() + ": holds " + std::to_string(*largest) +
+                                  ", a sensor of " + std::to_string(sensor.bits) +
+                                  " bits ends at " + std::to_string((1u << sensor.bits) - 1));
 }
 
 Image<std::uint16_t> read_frame(const std::filesystem::path& path, const Camera& camera,
@@ -63,7 +64,8 @@ Paths files_of(const Paths& inputs, const std::vector<std::string>& names) {
 StripeImages read_stripes(const Paths& inputs, const std::filesystem::path& calibration) {
   LaserLineSetup setup = read_laser_line_calibration(calibration);
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < setup.scanner_from_camera.size(); ++i) names.push_back(numbered(i, ".png"));
+  for (std::size_t i = 0; i < setup.scanner_from_camera.size(); ++i)
+    names.push_back(numbered(i, ".png"));
   StripeImages frames{setup.calibration, {}, std::move(setup.scanner_from_camera)};
   for (const auto& path : files_of(inputs, names))
     frames.images.push_back(read_frame(path, frames.calibration.camera, frames.calibration.sensor));
@@ -125,8 +127,8 @@ void read_directions(const std::filesystem::path& path, Waveforms& frames) {
   for (std::size_t i = 0; i < table.shape[0]; ++i) {
     const Eigen::Vector3d direction = Eigen::Map<const Eigen::Vector3d>(&table.values[3 * i]);
     if (!(std::abs(direction.norm() - 1) < 1e-6))
-      throw Error(Trouble::input, path.string() + ": direction " + std::to_string(i) + " has length " +
-                                      shortest(direction.norm()) + ", must be 1");
+      throw Error(Trouble::input, path.string() + ": direction " + std::to_string(i) +
+                                      " has length " + shortest(direction.norm()) + ", must be 1");
     frames.directions.push_back(direction);
   }
 }
@@ -146,8 +148,9 @@ Waveforms read_waveforms(const Paths& inputs, const std::filesystem::path& calib
                                     " rays, " + paths[1].string() + " has " + std::to_string(rays));
   const std::size_t cells = std::size_t{setup.grid.rows} * setup.grid.columns;
   if (cells != 0 && cells != rays)
-    throw Error(Trouble::input, calibration.string() + ": rows x columns is " + std::to_string(cells) +
-                                    ", there are " + std::to_string(rays) + " rays");
+    throw Error(Trouble::input, calibration.string() + ": rows x columns is " +
+                                    std::to_string(cells) + ", there are " + std::to_string(rays) +
+                                    " rays");
   return frames;
 }
 

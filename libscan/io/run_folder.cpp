@@ -17,8 +17,9 @@ namespace {
 
 constexpr const char* record_name = "stages.json";
 constexpr std::array<const char*, 13> run_names = {
-    record_name,   "recipe.json", "effects.json",        "scans",        "raw",        "truth", "alignment.json",
-    "poses.tum",   "aligned.ply", "reconstruction.json", "verdict.json", "surface.ply", "report.html"};
+    record_name,    "recipe.json",    "effects.json", "scans",       "raw",
+    "truth",        "alignment.json", "poses.tum",    "aligned.ply", "reconstruction.json",
+    "verdict.json", "surface.ply",    "report.html"};
 
 bool holds_run(const std::filesystem::path& path) {
   return std::any_of(run_names.begin(), run_names.end(),
@@ -30,7 +31,8 @@ void remove_run(const std::filesystem::path& path) {
     std::error_code error;
     std::filesystem::remove_all(path / name, error);
     if (error)
-      throw Error(Trouble::output, (path / name).string() + ": cannot be removed: " + error.message());
+      throw Error(Trouble::output,
+                  (path / name).string() + ": cannot be removed: " + error.message());
   }
 }
 
@@ -89,7 +91,8 @@ bool is_done(const RunFolder& folder, std::string_view stage, std::string_view i
 void record_stage(RunFolder& folder, std::string_view stage, std::string_view inputs,
                   const std::vector<std::string>& outputs) {
   StageRecord record{std::string(stage), std::string(inputs), {}};
-  for (const std::string& file : outputs) record.outputs[file] = fingerprint(read_file(folder.path / file));
+  for (const std::string& file : outputs)
+    record.outputs[file] = fingerprint(read_file(folder.path / file));
   const auto earlier = std::find_if(folder.stages.begin(), folder.stages.end(),
                                     [&](const StageRecord& r) { return r.stage == stage; });
   folder.stages.erase(earlier, folder.stages.end());

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The folder of one run, and which of its stages are done.
 //
-//   recipe.json effects.json scans/000.ply ... raw/000/... truth/ alignment.json poses.tum aligned.ply
-//   surface.ply reconstruction.json verdict.json report.html stages.json
+//   recipe.json effects.json scans/000.ply ... raw/000/... truth/ alignment.json poses.tum
+//   aligned.ply surface.ply reconstruction.json verdict.json report.html stages.json
 //
-// stages.json records each finished stage: the fingerprint of what it was made from and one for each
-// file that it wrote. It holds no times: a run's files do not depend on the number of threads.
+// stages.json records each finished stage: the fingerprint of what it was made from and one for
+// each file that it wrote. It holds no times: a run's files do not depend on the number of threads.
 #pragma once
 
 #include <filesystem>
@@ -34,9 +34,9 @@ enum class RunStart {
   resume,  // an earlier run goes on; without one like fresh
 };
 
-// Creates or opens the folder. Throws scan::Error: output if it cannot be created or written, if the
-// path is a file, or if it holds an earlier run and `start` is fresh (hint: --force or --resume); input
-// if its stages.json is broken.
+// Creates or opens the folder. Throws scan::Error: output if it cannot be created or written, if
+// the path is a file, or if it holds an earlier run and `start` is fresh (hint: --force or
+// --resume); input if its stages.json is broken.
 RunFolder open_run_folder(const std::filesystem::path& path, RunStart start);
 
 // True if the stage was recorded with the same inputs and each of its files is there unchanged.

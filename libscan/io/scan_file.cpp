@@ -25,14 +25,15 @@ std::string ending_of(const std::filesystem::path& path) {
 
 [[noreturn]] void refuse_ending(const std::filesystem::path& path, Trouble trouble,
                                 const std::string& known) {
-  throw Error(trouble, path.string() + ": format '" + path.extension().string() + "' is not one of " +
-                           known);
+  throw Error(trouble, path.string() + ": format '" + path.extension().string() +
+                           "' is not one of " + known);
 }
 
 PointCloud cloud_from_array(const std::filesystem::path& path) {
   const NumberArray array = read_npy(path);
   if (array.shape.size() != 2)
-    throw Error(Trouble::input, path.string() + ": points need an array of two dimensions, it has " +
+    throw Error(Trouble::input, path.string() +
+                                    ": points need an array of two dimensions, it has " +
                                     std::to_string(array.shape.size()));
   return cloud_from_rows(array.values, array.shape[1], path.string());
 }
@@ -52,8 +53,8 @@ Scan read_any_scan(const std::filesystem::path& path) {
   return scan;
 }
 
-// Normals become unit, or (0, 0, 0) where they say nothing. Those that are unit to 1e-6 stay as they
-// are: a file's floats are that good, and what libscan wrote must come back to the bit.
+// Normals become unit, or (0, 0, 0) where they say nothing. Those that are unit to 1e-6 stay as
+// they are: a file's floats are that good, and what libscan wrote must come back to the bit.
 void tidy_normals(PointCloud& cloud) {
   for (Eigen::Vector3d& normal : cloud.normals) {
     const double length = normal.stableNorm();

@@ -17,9 +17,9 @@ namespace scan {
 
 Ply ply_from(const Scan& scan);
 
-// Reads a `range_grid` element too (Stanford): lists of no or one vertex, row by row; rows and columns
-// from the obj_info lines num_rows and num_cols. Its empty cells count as misses["not recorded"]. A
-// vertex that the grid does not name leaves `ray` empty.
+// Reads a `range_grid` element too (Stanford): lists of no or one vertex, row by row; rows and
+// columns from the obj_info lines num_rows and num_cols. Its empty cells count as misses["not
+// recorded"]. A vertex that the grid does not name leaves `ray` empty.
 Scan scan_from(const Ply& ply, const std::filesystem::path& path);
 
 }  // namespace scan

@@ -24,6 +24,8 @@ template <class... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;
 };
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;  // clang 14 does not deduce aggregates
 
 Shape read_nested(JsonReader& reader, int depth);
 
@@ -83,9 +85,12 @@ Shape read_nested(JsonReader& reader, int depth) {
 
 const char* name_of(Operation operation) {
   switch (operation) {
-    case Operation::unite: return "unite";
-    case Operation::intersect: return "intersect";
-    case Operation::subtract: break;
+    case Operation::unite:
+      return "unite";
+    case Operation::intersect:
+      return "intersect";
+    case Operation::subtract:
+      break;
   }
   return "subtract";
 }
@@ -98,9 +103,13 @@ ordered_json combined_to_json(const CombinedShape& combined) {
 
 }  // namespace
 
-Shape read_shape(JsonReader& reader) { return read_nested(reader, 0); }
+Shape read_shape(JsonReader& reader) {
+  return read_nested(reader, 0);
+}
 
-PlacedShape read_placed_shape(JsonReader& reader) { return read_part(reader, 0); }
+PlacedShape read_placed_shape(JsonReader& reader) {
+  return read_part(reader, 0);
+}
 
 ordered_json to_json(const PlacedShape& placed) {
   return {{"shape", to_json(placed.shape)},
@@ -110,7 +119,9 @@ ordered_json to_json(const PlacedShape& placed) {
 ordered_json to_json(const Shape& shape) {
   return std::visit(
       Overloaded{
-          [](const PlaneShape&) -> ordered_json { return {{"plane", ordered_json::object()}}; },
+          [](const PlaneShape&) -> ordered_json {
+            return {{"plane", ordered_json::object()}};
+          },
           [](const SphereShape& s) -> ordered_json {
             return {{"sphere", {{"radius_m", s.radius_m}}}};
           },
@@ -138,12 +149,15 @@ ordered_json to_json(const Pose& pose) {
 }
 
 Pose pose_from_json(const json& matrix, const std::string& place) {
-  const auto fail = [&](const std::string& what) { throw Error(Trouble::input, place + ": " + what); };
+  const auto fail = [&](const std::string& what) {
+    throw Error(Trouble::input, place + ": " + what);
+  };
   if (!matrix.is_array() || matrix.size() != 4) fail("must be a 4x4 matrix, four rows of numbers");
   Eigen::Matrix4d m;
   for (int row = 0; row < 4; ++row) {
     const json& numbers = matrix[static_cast<std::size_t>(row)];
-    if (!numbers.is_array() || numbers.size() != 4) fail("row " + std::to_string(row) + " must have four numbers");
+    if (!numbers.is_array() || numbers.size() != 4)
+      fail("row " + std::to_string(row) + " must have four numbers");
     for (int column = 0; column < 4; ++column) {
       const json& number = numbers[static_cast<std::size_t>(column)];
       if (!number.is_number() || !std::isfinite(number.get<double>()))

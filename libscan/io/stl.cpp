@@ -100,7 +100,8 @@ Mesh parse_text(std::string_view text, const std::string& name) {
 void store_vector(std::string& bytes, const Eigen::Vector3d& vector) {
   for (const double x : vector) {
     if (!(std::abs(x) <= std::numeric_limits<float>::max()))
-      throw Error(Trouble::input, "stl: coordinate " + shortest(x) + " is beyond the range of float");
+      throw Error(Trouble::input,
+                  "stl: coordinate " + shortest(x) + " is beyond the range of float");
     store(bytes, static_cast<float>(x), std::endian::little);
   }
 }
@@ -117,9 +118,9 @@ Mesh parse_stl(std::string_view bytes, const std::string& name) {
   }
   std::string_view words = bytes.substr(0, 256);
   if (take_word(words, "\n") == "solid") return parse_text(bytes, name);
-  throw Error(Trouble::input, name + ": is neither a text STL ('solid ...') nor a binary one (its " +
-                                  std::to_string(bytes.size()) +
-                                  " bytes do not fit its count of triangles)");
+  throw Error(Trouble::input,
+              name + ": is neither a text STL ('solid ...') nor a binary one (its " +
+                  std::to_string(bytes.size()) + " bytes do not fit its count of triangles)");
 }
 
 std::string stl_bytes(const Mesh& mesh) {

@@ -63,8 +63,8 @@ class Lines {
   std::size_t number_ = 0;
 };
 
-// Takes the next word off the front of `line`; empty at its end. Blanks and tabs separate words, and
-// so do the characters of `also`.
+// Takes the next word off the front of `line`; empty at its end. Blanks and tabs separate words,
+// and so do the characters of `also`.
 std::string_view take_word(std::string_view& line, std::string_view also = {});
 
 std::string lower_case(std::string_view word);

@@ -35,7 +35,8 @@ TrueSurface read_surface_json(const std::filesystem::path& path) {
   JsonReader reader(document, path.string());
   TrueSurface surface;
   if (reader.has("shapes"))
-    for (JsonReader& entry : reader.objects("shapes")) surface.shapes.push_back(read_placed_shape(entry));
+    for (JsonReader& entry : reader.objects("shapes"))
+      surface.shapes.push_back(read_placed_shape(entry));
   if (reader.has("meshes")) {
     const nlohmann::json& names = reader.value("meshes");
     if (!names.is_array()) reader.fail("meshes", "must be a list of file names");
@@ -67,7 +68,8 @@ std::vector<RayTruth> read_rays(const std::filesystem::path& path) {
   const PlyProperty* object = ply.find("vertex")->find("object");
   const auto* objects = object ? std::get_if<std::vector<std::int32_t>>(&object->values) : nullptr;
   if (!objects || object->is_list || cloud.normals.size() != cloud.size())
-    throw Error(Trouble::input, path.string() + ": is no truth of rays (x y z nx ny nz, int object)");
+    throw Error(Trouble::input,
+                path.string() + ": is no truth of rays (x y z nx ny nz, int object)");
   std::vector<RayTruth> rays;
   rays.reserve(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)

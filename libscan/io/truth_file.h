@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run's truth on disk: poses.tum, surface.json, NNN.ply.
 //
-// surface.json: { "shapes": [ { "shape": {...}, "parent_from_shape": 4x4 } ], "meshes": ["FILE", ...] },
-// mesh files beside it. NNN.ply: per ray x y z nx ny nz object, scanner frame, NaN where the ray meets
-// nothing (object -1).
+// surface.json: { "shapes": [ { "shape": {...}, "parent_from_shape": 4x4 } ], "meshes": ["FILE",
+// ...] }, mesh files beside it. NNN.ply: per ray x y z nx ny nz object, scanner frame, NaN where
+// the ray meets nothing (object -1).
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,8 @@ namespace scan {
 void write_truth(const std::filesystem::path& folder, const Truth& truth);
 Truth read_truth(const std::filesystem::path& folder);
 
-// A reference surface by file; scan::Error (input) if it is empty. A mesh (any format of read_mesh) or surface.json with analytic shapes.
+// A reference surface by file; scan::Error (input) if it is empty. A mesh (any format of read_mesh)
+// or surface.json with analytic shapes.
 TrueSurface read_true_surface(const std::filesystem::path& path);
 
 }  // namespace scan

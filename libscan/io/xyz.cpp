@@ -35,9 +35,10 @@ std::size_t append_line(std::string_view line, std::vector<double>& numbers,
 PointCloud cloud_from_rows(std::span<const double> numbers, std::size_t columns,
                            const std::string& name) {
   if (columns != 3 && columns != 4 && columns != 6 && columns != 7)
-    throw Error(Trouble::input, name + ": has " + std::to_string(columns) +
-                                    " numbers a row; 3 (x y z), 4 (and intensity), 6 (and nx ny nz) "
-                                    "or 7 (normal and intensity) are understood");
+    throw Error(Trouble::input,
+                name + ": has " + std::to_string(columns) +
+                    " numbers a row; 3 (x y z), 4 (and intensity), 6 (and nx ny nz) "
+                    "or 7 (normal and intensity) are understood");
   PointCloud cloud;
   for (std::size_t at = 0; at + columns <= numbers.size(); at += columns) {
     const double* row = numbers.data() + at;

@@ -10,8 +10,8 @@
 
 namespace scan {
 
-// Blanks, tabs, commas or semicolons between the numbers; # and // begin a comment. Every line has as
-// many numbers as the first one: 3, 4, 6 or 7. scan::Error (input) names line, column and word.
+// Blanks, tabs, commas or semicolons between the numbers; # and // begin a comment. Every line has
+// as many numbers as the first one: 3, 4, 6 or 7. scan::Error (input) names line, column and word.
 PointCloud read_xyz(const std::filesystem::path& path);
 PointCloud parse_xyz(std::string_view text, const std::string& name);
 

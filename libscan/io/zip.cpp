@@ -76,7 +76,8 @@ class Archive {
   // The end record is the last thing in the file but for a comment of at most 65535 bytes.
   std::size_t end_record() const {
     if (bytes_.size() < end_bytes) fail("the file ends early");
-    for (std::size_t at = bytes_.size() - end_bytes; at + 65535 + end_bytes >= bytes_.size(); --at) {
+    for (std::size_t at = bytes_.size() - end_bytes; at + 65535 + end_bytes >= bytes_.size();
+         --at) {
       if (u32(bytes_, at) == end_signature) return at;
       if (at == 0) break;
     }

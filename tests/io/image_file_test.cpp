@@ -43,20 +43,23 @@ TEST(Png, TurnsColoursIntoGreyByTheStatedWeights) {
   write_png(folder / "c.png", image);
   // 76.245, 149.685, 29.07, 18.15
   EXPECT_EQ(read_grey8(folder / "c.png").pixels, (std::vector<std::uint8_t>{76, 150, 29, 18}));
-  EXPECT_NE(error_of([&] { read_grey16(folder / "c.png"); }).find("one grey channel"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_grey16(folder / "c.png"); }).find("one grey channel"),
+            std::string::npos);
 }
 
 TEST(Png, ReadsOrRefusesAnyDamage) {
   const TemporaryFolder folder;
   write_png(folder / "a.png", noise<std::uint16_t>(16, 12));
-  for (const auto& good : {read_file(folder / "a.png"), png_bytes(Image<Colour>(9, 9, {{1, 2, 3}}))})
+  for (const auto& good :
+       {read_file(folder / "a.png"), png_bytes(Image<Colour>(9, 9, {{1, 2, 3}}))})
     expect_read_or_refused(good, 3000, [](const std::string& bytes) {
       decode_png_grey8(bytes, "damaged.png");
       decode_png_grey16(bytes, "damaged.png");
     });
 }
 
-// IHDR with a right checksum that promises 10000 x 10000 16-bit pixels in a file of a hundred bytes.
+// IHDR with a right checksum that promises 10000 x 10000 16-bit pixels in a file of a hundred
+// bytes.
 TEST(Png, RefusesLyingSizesBeforeAllocating) {
   const TemporaryFolder folder;
   write_png(folder / "a.png", noise<std::uint16_t>(2, 2));
@@ -70,10 +73,12 @@ TEST(Png, RefusesLyingSizesBeforeAllocating) {
   };
   const double before_mib = peak_memory_mib();
   promise(10000);
-  EXPECT_NE(error_of([&] { read_grey16(folder / "lie.png"); }).find("promises 200000000 bytes"), std::string::npos);
-  promise(100000);
-  EXPECT_NE(error_of([&] { read_grey16(folder / "lie.png"); }, Trouble::resource).find("over the limit"),
+  EXPECT_NE(error_of([&] { read_grey16(folder / "lie.png"); }).find("promises 200000000 bytes"),
             std::string::npos);
+  promise(100000);
+  EXPECT_NE(
+      error_of([&] { read_grey16(folder / "lie.png"); }, Trouble::resource).find("over the limit"),
+      std::string::npos);
   EXPECT_LT(peak_memory_mib() - before_mib, 16);  // 191 MiB if it were believed
 }
 
@@ -94,16 +99,21 @@ TEST(Pfm, BringsBackFloatsAndTheUnknown) {
 }
 
 TEST(Pfm, ReadsBothByteOrders) {
-  const std::string big = std::string("Pf\n2 1\n1.0\n") + std::string("\x3f\x80\x00\x00\x40\x00\x00\x00", 8);
+  const std::string big =
+      std::string("Pf\n2 1\n1.0\n") + std::string("\x3f\x80\x00\x00\x40\x00\x00\x00", 8);
   EXPECT_EQ(decode_pfm(big, "big.pfm").pixels, (std::vector<float>{1, 2}));
-  const std::string little = std::string("Pf 2 1 -0.5 ") + std::string("\x00\x00\x80\x3f\x00\x00\x00\x40", 8);
+  const std::string little =
+      std::string("Pf 2 1 -0.5 ") + std::string("\x00\x00\x80\x3f\x00\x00\x00\x40", 8);
   EXPECT_EQ(decode_pfm(little, "little.pfm").pixels, (std::vector<float>{1, 2}));
 }
 
 TEST(Pfm, ReadsOrRefusesAnyDamage) {
   const std::string good = std::string("Pf\n2 1\n-1.0\n") + std::string(8, '\x3f');
-  expect_read_or_refused(good, 3000, [](const std::string& bytes) { decode_pfm(bytes, "damaged.pfm"); });
-  EXPECT_NE(error_of([&] { decode_pfm("Pf\n60000 2000\n-1\n1234", "lie.pfm"); }).find("has 4 bytes"), std::string::npos);
+  expect_read_or_refused(good, 3000,
+                         [](const std::string& bytes) { decode_pfm(bytes, "damaged.pfm"); });
+  EXPECT_NE(
+      error_of([&] { decode_pfm("Pf\n60000 2000\n-1\n1234", "lie.pfm"); }).find("has 4 bytes"),
+      std::string::npos);
   error_of([&] { decode_pfm("Pf\n4000000000 4000000000\n-1\n1234", "lie.pfm"); });
 }
 
@@ -121,8 +131,10 @@ TEST(Npy, BringsBackShapeAndNumbers) {
   EXPECT_NE(read_file(folder / "b.npy").find("'shape': (3,), }"), std::string::npos);
 }
 
-std::string npy_by_hand(const std::string& type, const std::string& shape, const std::string& data) {
-  const std::string text = "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }\n";
+std::string npy_by_hand(const std::string& type, const std::string& shape,
+                        const std::string& data) {
+  const std::string text =
+      "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }\n";
   return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(text.size()) + '\0' + text + data;
 }
 
@@ -143,10 +155,14 @@ TEST(Npy, ReadsEachType) {
 }
 
 TEST(Npy, RefusesShapesThatDoNotFitAndForeignTypes) {
-  EXPECT_NE(error_of([] { decode_npy(npy_by_hand("<f8", "(4000000000, 4000000000)", "12345678"), "l.npy"); })
-                .find("its shape needs another number"), std::string::npos);
+  EXPECT_NE(error_of([] {
+              decode_npy(npy_by_hand("<f8", "(4000000000, 4000000000)", "12345678"), "l.npy");
+            }).find("its shape needs another number"),
+            std::string::npos);
   error_of([] { decode_npy(npy_by_hand("<f8", "(2,)", "12345678"), "l.npy"); });
-  EXPECT_NE(error_of([] { decode_npy(npy_by_hand("<c8", "(1,)", "12345678"), "l.npy"); }).find("'<c8'"), std::string::npos);
+  EXPECT_NE(
+      error_of([] { decode_npy(npy_by_hand("<c8", "(1,)", "12345678"), "l.npy"); }).find("'<c8'"),
+      std::string::npos);
   expect_read_or_refused(npy_by_hand("<f4", "(2, 1)", "12345678"), 5000,
                          [](const std::string& bytes) { decode_npy(bytes, "damaged.npy"); });
 }
@@ -213,8 +229,10 @@ TEST(RealData, DamagedJpegsAreReadOrRefused) {
   const std::string good = read_file(file);
   for (int flip = 0; flip < 200; ++flip) {
     RandomStream random(6, 0, static_cast<std::uint64_t>(flip));
-    std::string bytes = good.substr(0, flip % 3 == 0 ? random.bits32() % good.size() + 1 : good.size());
-    bytes[random.bits32() % std::min<std::size_t>(bytes.size(), 1000)] = static_cast<char>(random.bits32());
+    std::string bytes =
+        good.substr(0, flip % 3 == 0 ? random.bits32() % good.size() + 1 : good.size());
+    bytes[random.bits32() % std::min<std::size_t>(bytes.size(), 1000)] =
+        static_cast<char>(random.bits32());
     try {
       decode_jpeg_grey8(bytes, "damaged.jpg");
     } catch (const Error&) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of io share: a folder that vanishes, the outside data, and broken copies of a file.
+// What the tests of io share: a folder that vanishes, the outside data, and broken copies of a
+// file.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,8 +22,9 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            ("libscan_" + std::to_string(::getpid()) + "_" + test->test_suite_name() + "_" + test->name());
+    path_ =
+        std::filesystem::temp_directory_path() / ("libscan_" + std::to_string(::getpid()) + "_" +
+                                                  test->test_suite_name() + "_" + test->name());
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
@@ -53,8 +55,8 @@ inline std::string error_of(const std::function<void()>& body, Trouble trouble =
   return {};
 }
 
-// Hands `read` every truncation of a good file and `flips` copies with up to four bytes changed. Each
-// must be read or refused by scan::Error; anything else (another exception, a crash) fails.
+// Hands `read` every truncation of a good file and `flips` copies with up to four bytes changed.
+// Each must be read or refused by scan::Error; anything else (another exception, a crash) fails.
 inline void expect_read_or_refused(const std::string& good, int flips,
                                    const std::function<void(const std::string&)>& read) {
   const auto attempt = [&](const std::string& bytes, const std::string& what) {

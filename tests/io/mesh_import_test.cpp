@@ -32,7 +32,8 @@ std::string document(const std::string& uri) {
          R"("accessors":[{"bufferView":0,"componentType":5126,"count":12,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},)"
          R"({"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],)"
          R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":144},{"buffer":0,"byteOffset":144,"byteLength":24}],)"
-         R"("buffers":[{)" + uri + R"("byteLength":168}]})";
+         R"("buffers":[{)" +
+         uri + R"("byteLength":168}]})";
 }
 
 std::string glb() {
@@ -74,12 +75,16 @@ TEST(Gltf, RefusesPromisesThatDoNotHold) {
     write_file(folder / "a.gltf", text);
     return error_of([&] { read_gltf(folder / "a.gltf"); });
   };
-  EXPECT_NE(said(R"("byteLength":168)", R"("byteLength":169)").find("a buffer of 169 bytes, there are 168"),
+  EXPECT_NE(said(R"("byteLength":168)", R"("byteLength":169)")
+                .find("a buffer of 169 bytes, there are 168"),
             std::string::npos);
-  EXPECT_NE(said(R"("byteLength":24)", R"("byteLength":25)").find("ends behind its buffer"), std::string::npos);
-  EXPECT_NE(said(R"("count":12,"type":"SCALAR")", R"("count":4000000000,"type":"SCALAR")").find("4000000000 entries"),
+  EXPECT_NE(said(R"("byteLength":24)", R"("byteLength":25)").find("ends behind its buffer"),
             std::string::npos);
-  EXPECT_NE(said(R"("indices":1)", R"("indices":7)").find("indices is 7, there are 2"), std::string::npos);
+  EXPECT_NE(said(R"("count":12,"type":"SCALAR")", R"("count":4000000000,"type":"SCALAR")")
+                .find("4000000000 entries"),
+            std::string::npos);
+  EXPECT_NE(said(R"("indices":1)", R"("indices":7)").find("indices is 7, there are 2"),
+            std::string::npos);
   EXPECT_NE(said(R"("children":[1])", R"("children":[0])").find("ancestor"), std::string::npos);
   EXPECT_NE(said("a.bin", "b.bin").find("'b.bin' cannot be read"), std::string::npos);
   EXPECT_NE(said("{\"asset\"", "[\"asset\"").find("not valid JSON"), std::string::npos);
@@ -101,7 +106,8 @@ TEST(Gltf, ReadsOrRefusesAnyDamage) {
     } catch (const Error&) {
     }
   }
-  for (std::size_t size = 0; size < good.size(); size += 13) error_of([&] { read(good.substr(0, size)); });
+  for (std::size_t size = 0; size < good.size(); size += 13)
+    error_of([&] { read(good.substr(0, size)); });
 }
 
 }  // namespace

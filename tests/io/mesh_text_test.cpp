@@ -32,7 +32,8 @@ TEST(Obj, NamesTheLineOfWhatIsBroken) {
   EXPECT_EQ(said("v 0 0 0\nf 1 1\n"), "a.obj: line 2: a face has fewer than three corners");
 }
 
-const std::string off = "OFF\n# by hand\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0.1\n\n4 0 1 2 3\n3 0 1 2 255 0 0\n";
+const std::string off =
+    "OFF\n# by hand\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0.1\n\n4 0 1 2 3\n3 0 1 2 255 0 0\n";
 
 TEST(Off, ReadsHeadersOfEachKind) {
   const Mesh mesh = parse_off(off, "a.off");
@@ -40,7 +41,8 @@ TEST(Off, ReadsHeadersOfEachKind) {
   EXPECT_EQ(mesh.vertices[3].z(), 0.1);
   EXPECT_EQ(parse_off("OFF 1 0 0\n1 2 3\n", "a.off").vertices.size(), 1u);
   EXPECT_EQ(parse_off("OFF1 0 0\n1 2 3\n", "a.off").vertices.size(), 1u);
-  EXPECT_EQ(parse_off("COFF\n1 0 0\n1 2 3 255 0 0 255\n", "a.off").vertices[0], Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(parse_off("COFF\n1 0 0\n1 2 3 255 0 0 255\n", "a.off").vertices[0],
+            Eigen::Vector3d(1, 2, 3));
 }
 
 TEST(Off, NamesTheLineOfWhatIsBroken) {
@@ -50,16 +52,22 @@ TEST(Off, NamesTheLineOfWhatIsBroken) {
   EXPECT_EQ(said("PLY\n"), "a.off: line 1: is not an OFF file (its first line is not 'OFF')");
   EXPECT_EQ(said("4OFF\n"), "a.off: line 1: is not an OFF file (its first line is not 'OFF')");
   EXPECT_EQ(said("OFF BINARY\n"), "a.off: line 1: binary OFF is not understood");
-  EXPECT_EQ(said("OFF\n4000000000 1 0\n0 0 0\n"), "a.off: line 3: the file ends where vertex 1 should be");
+  EXPECT_EQ(said("OFF\n4000000000 1 0\n0 0 0\n"),
+            "a.off: line 3: the file ends where vertex 1 should be");
   EXPECT_EQ(said("OFF\n1 1 0\n0 0 0\n3 0 0 1\n"), "a.off: line 4: vertex 1, there are 1");
-  EXPECT_EQ(said("OFF\n1 1 0\n0 0 0\n4000000000 0\n"), "a.off: line 4: the line ends before its 4000000000 corners");
-  EXPECT_EQ(said("OFF\n1 0 0\n0 0 0\n1 1 1\n"), "a.off: line 4: data behind the last face that the header promises");
+  EXPECT_EQ(said("OFF\n1 1 0\n0 0 0\n4000000000 0\n"),
+            "a.off: line 4: the line ends before its 4000000000 corners");
+  EXPECT_EQ(said("OFF\n1 0 0\n0 0 0\n1 1 1\n"),
+            "a.off: line 4: data behind the last face that the header promises");
 }
 
 const std::string stl =
-    "solid by hand\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0.1\nendloop\n"
-    "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0.1\nendloop\nendfacet\n"
-    "facet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 1 0 -0\nvertex 0 1 0.1\nendloop\nendfacet\nendsolid\n";
+    "solid by hand\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+    "0.1\nendloop\n"
+    "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 "
+    "0.1\nendloop\nendfacet\n"
+    "facet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 1 0 -0\nvertex 0 1 "
+    "0.1\nendloop\nendfacet\nendsolid\n";
 
 TEST(Stl, WeldsEqualVerticesAndDropsWhatIsNoTriangle) {
   const Mesh mesh = parse_stl(stl, "a.stl");
@@ -79,19 +87,26 @@ TEST(Stl, BinaryThatBeginsWithSolidIsBinary) {
 TEST(Stl, RefusesLyingCountsAndNumbersThatAreNone) {
   std::string bytes = stl_bytes({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
   bytes[80] = '\xff', bytes[83] = '\xff';
-  EXPECT_NE(error_of([&] { parse_stl(bytes, "a.stl"); }).find("do not fit its count"), std::string::npos);
+  EXPECT_NE(error_of([&] { parse_stl(bytes, "a.stl"); }).find("do not fit its count"),
+            std::string::npos);
   bytes = stl_bytes({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
   bytes[98] = '\x80', bytes[99] = '\x7f';
-  EXPECT_EQ(error_of([&] { parse_stl(bytes, "a.stl"); }), "a.stl: triangle 0 has a coordinate that is not finite");
-  EXPECT_NE(error_of([&] { stl_bytes({{{1e39, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}); }).find("1e+39"),
+  EXPECT_EQ(error_of([&] { parse_stl(bytes, "a.stl"); }),
+            "a.stl: triangle 0 has a coordinate that is not finite");
+  EXPECT_NE(error_of([&] {
+              stl_bytes({{{1e39, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+            }).find("1e+39"),
             std::string::npos);
 }
 
 TEST(MeshText, ReadsOrRefusesAnyDamage) {
   const auto checked = [](const Mesh& mesh) { check(mesh); };
-  expect_read_or_refused(obj, 5000, [&](const std::string& bytes) { checked(parse_obj(bytes, "d.obj")); });
-  expect_read_or_refused(off, 5000, [&](const std::string& bytes) { checked(parse_off(bytes, "d.off")); });
-  expect_read_or_refused(stl, 5000, [&](const std::string& bytes) { checked(parse_stl(bytes, "d.stl")); });
+  expect_read_or_refused(obj, 5000,
+                         [&](const std::string& bytes) { checked(parse_obj(bytes, "d.obj")); });
+  expect_read_or_refused(off, 5000,
+                         [&](const std::string& bytes) { checked(parse_off(bytes, "d.off")); });
+  expect_read_or_refused(stl, 5000,
+                         [&](const std::string& bytes) { checked(parse_stl(bytes, "d.stl")); });
   expect_read_or_refused(stl_bytes(parse_stl(stl, "a.stl")), 5000,
                          [&](const std::string& bytes) { checked(parse_stl(bytes, "d.stl")); });
 }

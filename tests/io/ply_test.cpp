@@ -19,8 +19,8 @@ constexpr PlyEncoding encodings[] = {PlyEncoding::ascii, PlyEncoding::binary_lit
 template <class Number>
 std::vector<Number> extremes() {
   using Limits = std::numeric_limits<Number>;
-  return {Number{0}, Number{1}, Limits::lowest(), Limits::max(), Limits::min(),
-          static_cast<Number>(Limits::max() / 3)};
+  return {Number{0},     Number{1},     Limits::lowest(),
+          Limits::max(), Limits::min(), static_cast<Number>(Limits::max() / 3)};
 }
 
 // Every scalar type as scalar and as list, with its extreme values; lists of 0 to 3 entries.
@@ -65,7 +65,8 @@ void expect_same(const Ply& a, const Ply& b) {
             const auto& others = std::get<Numbers>(y.values);
             ASSERT_EQ(numbers.size(), others.size());
             EXPECT_EQ(std::memcmp(numbers.data(), others.data(),
-                                  numbers.size() * sizeof(typename Numbers::value_type)), 0)
+                                  numbers.size() * sizeof(typename Numbers::value_type)),
+                      0)
                 << x.name;
           },
           x.values);
@@ -95,7 +96,8 @@ TEST(Ply, KeepsDoublesOfAnyBitPatternInText) {
 
 TEST(Ply, ReadsListsLongerThan255) {
   PlyElement element{"strip", 2, {}};
-  element.properties.push_back({"vertex_indices", std::vector<std::int32_t>(301, 7), {300, 1}, true});
+  element.properties.push_back(
+      {"vertex_indices", std::vector<std::int32_t>(301, 7), {300, 1}, true});
   const Ply ply{{}, {}, {element}};
   for (const PlyEncoding encoding : encodings)
     expect_same(parse_ply(ply_bytes(ply, encoding), "test.ply"), ply);
@@ -103,8 +105,10 @@ TEST(Ply, ReadsListsLongerThan255) {
 
 // Written by hand from the format's description (Turk 1994).
 const std::string square =
-    "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 4\nproperty float x\nproperty float32 y\n"
-    "property double z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\n"
+    "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 4\nproperty float x\nproperty float32 "
+    "y\n"
+    "property double z\nproperty uchar red\nelement face 1\nproperty list uchar int "
+    "vertex_indices\n"
     "end_header\n0 0 0.1 255\n1 0 0.1 0\n\n1 1 0.1 7\n0 1 0.1 8\n4 0 1 2 3\n";
 
 TEST(Ply, ReadsAFileWrittenByHand) {
@@ -119,9 +123,10 @@ TEST(Ply, ReadsAFileWrittenByHand) {
 
 TEST(Ply, ReadsBigEndianBytesWrittenByHand) {
   const std::string bytes = std::string(
-      "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty short a\nproperty float b\n"
-      "property list uchar ushort c\nend_header\n") +
-      std::string("\xff\xfe\x3f\x80\x00\x00\x02\x00\x01\x01\x00", 11);
+                                "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty "
+                                "short a\nproperty float b\n"
+                                "property list uchar ushort c\nend_header\n") +
+                            std::string("\xff\xfe\x3f\x80\x00\x00\x02\x00\x01\x01\x00", 11);
   const Ply ply = parse_ply(bytes, "big.ply");
   EXPECT_EQ(ply.find("vertex")->numbers("a"), std::vector<double>{-2});
   EXPECT_EQ(ply.find("vertex")->numbers("b"), std::vector<double>{1});
@@ -131,8 +136,9 @@ TEST(Ply, ReadsBigEndianBytesWrittenByHand) {
 
 TEST(Ply, TakesHeaderLinesOfAllThreeEndings) {
   // the first byte of the row is a line feed: it must not be taken for a part of the header
-  const std::string head = "ply|format binary_little_endian 1.0|element v 1|property uchar a|"
-                           "property uchar b|end_header|";
+  const std::string head =
+      "ply|format binary_little_endian 1.0|element v 1|property uchar a|"
+      "property uchar b|end_header|";
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     std::string bytes;
     for (const char c : head) bytes += c == '|' ? end : std::string(1, c);
@@ -165,7 +171,8 @@ TEST(Ply, NamesWhatIsBrokenAndWhere) {
       {"no format", "ply\nelement vertex 2\nend_header\n", "must be 'format"},
       {"version", "ply\nformat ascii 2.0\nend_header\n", "version must be 1.0"},
       {"type", with_header("element v 1\nproperty real x\n", "1\n"), "line 4: unknown type 'real'"},
-      {"float length", with_header("element v 1\nproperty list float int x\n", "1 1\n"), "length of a list"},
+      {"float length", with_header("element v 1\nproperty list float int x\n", "1 1\n"),
+       "length of a list"},
       {"count", with_header("element v -1\nproperty int x\n"), "count is '-1'"},
       {"orphan", with_header("property int x\n"), "property before any element"},
       {"twice", with_header("element v 0\nproperty int x\nproperty int x\n"), "property 'x' twice"},
@@ -178,9 +185,11 @@ TEST(Ply, NamesWhatIsBrokenAndWhere) {
       {"not a number", with_header(xyz, "1 2\nx 4\n"), "property 'x', row 1: 'x'"},
       {"fraction", with_header(xyz, "1 2\n1 0.5\n"), "property 'y', row 1: '0.5'"},
       {"behind", with_header(xyz, "1 2\n3 4\n5 6\n"), "behind the last row"},
-      {"list length", with_header("element f 1\nproperty list char int i\n", "-1\n"), "length of a list is -1"},
+      {"list length", with_header("element f 1\nproperty list char int i\n", "-1\n"),
+       "length of a list is -1"},
       {"list end", with_header("element f 1\nproperty list uchar int i\n", "3 1 2\n"), "row 0"},
-      {"list lies", with_header("element f 1\nproperty list uint int i\n", "4000000000 1\n"), "4000000000 entries"},
+      {"list lies", with_header("element f 1\nproperty list uint int i\n", "4000000000 1\n"),
+       "4000000000 entries"},
   };
   for (const BrokenCase& broken : cases) {
     const std::string said = error_of([&] { parse_ply(broken.bytes, "broken.ply"); });
@@ -194,24 +203,29 @@ TEST(Ply, RefusesLyingCountsBeforeAllocating) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"})
     for (const char* count : {"4000000000", "18446744073709551615"})
       for (const char* property : {"double x", "list uint double x"}) {
-        const std::string bytes = std::string("ply\nformat ") + format + " 1.0\nelement vertex " + count +
-                                  "\nproperty " + property + "\nend_header\n1 2 3 4 5 6 7 8\n";
-        EXPECT_NE(error_of([&] { parse_ply(bytes, "lie.ply"); }).find("header promises"), std::string::npos);
+        const std::string bytes = std::string("ply\nformat ") + format + " 1.0\nelement vertex " +
+                                  count + "\nproperty " + property +
+                                  "\nend_header\n1 2 3 4 5 6 7 8\n";
+        EXPECT_NE(error_of([&] { parse_ply(bytes, "lie.ply"); }).find("header promises"),
+                  std::string::npos);
       }
-  const std::string list = std::string("ply\nformat binary_little_endian 1.0\nelement f 1\n"
-                                       "property list uint double i\nend_header\n") +
+  const std::string list = std::string(
+                               "ply\nformat binary_little_endian 1.0\nelement f 1\n"
+                               "property list uint double i\nend_header\n") +
                            std::string("\xff\xff\xff\xff........", 12);
-  EXPECT_NE(error_of([&] { parse_ply(list, "lie.ply"); }).find("4294967295 entries"), std::string::npos);
+  EXPECT_NE(error_of([&] { parse_ply(list, "lie.ply"); }).find("4294967295 entries"),
+            std::string::npos);
   EXPECT_LT(peak_memory_mib() - before_mib, 16);  // one honest allocation would take 30 GiB
 }
 
 TEST(Ply, ReadsOrRefusesAnyDamage) {
   for (const PlyEncoding encoding : encodings)
-    expect_read_or_refused(ply_bytes(ply_of_every_type(), encoding), 4000, [](const std::string& bytes) {
-      const Ply ply = parse_ply(bytes, "damaged.ply");
-      cloud_from(ply, "damaged.ply");
-      mesh_from(ply, "damaged.ply");
-    });
+    expect_read_or_refused(ply_bytes(ply_of_every_type(), encoding), 4000,
+                           [](const std::string& bytes) {
+                             const Ply ply = parse_ply(bytes, "damaged.ply");
+                             cloud_from(ply, "damaged.ply");
+                             mesh_from(ply, "damaged.ply");
+                           });
   expect_read_or_refused(square, 10000, [](const std::string& bytes) {
     check(mesh_from(parse_ply(bytes, "damaged.ply"), "damaged.ply"));
   });
@@ -219,18 +233,32 @@ TEST(Ply, ReadsOrRefusesAnyDamage) {
 
 TEST(Ply, RefusesToWriteWhatCannotBeRead) {
   PlyElement uneven{"vertex", 2, {{"x", std::vector<float>{1}, {}, false}}};
-  EXPECT_NE(error_of([&] { ply_bytes({{}, {}, {uneven}}); }).find("1 rows, the element has 2"), std::string::npos);
-  EXPECT_NE(error_of([&] { ply_bytes({{"two\nlines"}, {}, {}}); }).find("line break"), std::string::npos);
-  EXPECT_NE(error_of([&] { ply_bytes({{}, {}, {{"two words", 0, {}}}}); }).find("not one word"), std::string::npos);
+  EXPECT_NE(error_of([&] {
+              ply_bytes({{}, {}, {uneven}});
+            }).find("1 rows, the element has 2"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] {
+              ply_bytes({{"two\nlines"}, {}, {}});
+            }).find("line break"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] {
+              ply_bytes({{}, {}, {{"two words", 0, {}}}});
+            }).find("not one word"),
+            std::string::npos);
 }
 
 TEST(Ply, NamesAMissingCoordinateAndAnImpossibleCorner) {
-  const Ply flat = parse_ply(with_header("element vertex 1\nproperty int x\nproperty int y\n", "1 2\n"), "f");
-  EXPECT_NE(error_of([&] { cloud_from(flat, "flat.ply"); }).find("flat.ply: element 'vertex' has no property 'z'"),
+  const Ply flat =
+      parse_ply(with_header("element vertex 1\nproperty int x\nproperty int y\n", "1 2\n"), "f");
+  EXPECT_NE(error_of([&] {
+              cloud_from(flat, "flat.ply");
+            }).find("flat.ply: element 'vertex' has no property 'z'"),
             std::string::npos);
   std::string wrong = square;
   wrong.replace(wrong.find("4 0 1 2 3"), 9, "4 0 1 2 4");
-  EXPECT_NE(error_of([&] { mesh_from(parse_ply(wrong, "w"), "wrong.ply"); }).find("vertex 4, there are 4"),
+  EXPECT_NE(error_of([&] {
+              mesh_from(parse_ply(wrong, "w"), "wrong.ply");
+            }).find("vertex 4, there are 4"),
             std::string::npos);
 }
 

@@ -56,7 +56,8 @@ TEST(Poses, TumComesBackToRounding) {
 TEST(Poses, TumFollowsItsConvention) {
   const TemporaryFolder folder;
   // a quarter turn about z carries x to y; the quaternion's last number is the scalar
-  write_file(folder / "t.tum", "# t tx ty tz qx qy qz qw\n1.5 1 2 3 0 0 0.7071067811865476 0.7071067811865476\n");
+  write_file(folder / "t.tum",
+             "# t tx ty tz qx qy qz qw\n1.5 1 2 3 0 0 0.7071067811865476 0.7071067811865476\n");
   const auto poses = read_poses(folder / "t.tum");
   ASSERT_EQ(poses.size(), 1u);
   EXPECT_EQ(poses[0].name, "1.5");
@@ -65,7 +66,9 @@ TEST(Poses, TumFollowsItsConvention) {
 
 TEST(Poses, ConfHoldsTheInverseRotation) {
   const TemporaryFolder folder;
-  write_file(folder / "a.conf", "camera 0 0 0 0 0 0 1\nmesh ignored\nbmesh a.ply 1 2 3 0 0 0.7071067811865476 0.7071067811865476\n");
+  write_file(folder / "a.conf",
+             "camera 0 0 0 0 0 0 1\nmesh ignored\nbmesh a.ply 1 2 3 0 0 0.7071067811865476 "
+             "0.7071067811865476\n");
   const auto poses = read_poses(folder / "a.conf");
   ASSERT_EQ(poses.size(), 1u);
   EXPECT_EQ(poses[0].name, "a.ply");
@@ -75,7 +78,8 @@ TEST(Poses, ConfHoldsTheInverseRotation) {
 TEST(Poses, AlignmentIsReadByFileName) {
   const TemporaryFolder folder;
   const Pose pose = random_poses()[7].pose;
-  nlohmann::ordered_json document = {{"scans", {{{"file", "a.ply"}, {"world_from_scan", to_json(pose)}}}}};
+  nlohmann::ordered_json document = {
+      {"scans", {{{"file", "a.ply"}, {"world_from_scan", to_json(pose)}}}}};
   write_file(folder / "alignment.json", document.dump());
   const auto poses = read_poses(folder / "alignment.json");
   ASSERT_EQ(poses.size(), 1u);
@@ -86,13 +90,16 @@ TEST(Poses, AlignmentIsReadByFileName) {
 TEST(Poses, NearRotationsAreProjectedFarOnesRefused) {
   const TemporaryFolder folder;
   write_file(folder / "near.txt", "1.0005 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n");
-  EXPECT_LT((read_poses(folder / "near.txt")[0].pose.linear() - Eigen::Matrix3d::Identity()).norm(), 1e-15);
+  EXPECT_LT((read_poses(folder / "near.txt")[0].pose.linear() - Eigen::Matrix3d::Identity()).norm(),
+            1e-15);
   write_file(folder / "far.txt", "1.002 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n");
-  EXPECT_NE(error_of([&] { read_poses(folder / "far.txt"); }).find("away from a rotation"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_poses(folder / "far.txt"); }).find("away from a rotation"),
+            std::string::npos);
   write_file(folder / "mirror.txt", "-1 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n");
   error_of([&] { read_poses(folder / "mirror.txt"); });
   write_file(folder / "long.tum", "0 0 0 0 0 0 0 1.1\n");
-  EXPECT_NE(error_of([&] { read_poses(folder / "long.tum"); }).find("quaternion's length is 1.1"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_poses(folder / "long.tum"); }).find("quaternion's length is 1.1"),
+            std::string::npos);
 }
 
 TEST(Poses, NameLineAndWordOfWhatIsBroken) {
@@ -101,10 +108,14 @@ TEST(Poses, NameLineAndWordOfWhatIsBroken) {
     write_file(folder / name, text);
     return error_of([&] { read_poses(folder / name); });
   };
-  EXPECT_NE(said("a.tum", "0 0 0 0 0 0 0 1\n1 0 0 x 0 0 0 1\n").find("line 2, word 4: 'x'"), std::string::npos);
-  EXPECT_NE(said("b.tum", "0 0 0 0 0 0 0 1\n1 0 0\n").find("line 2: has 3 numbers"), std::string::npos);
-  EXPECT_NE(said("c.txt", "1 0 0 0\n0 1 0 0\n").find("ends inside a 4x4 matrix"), std::string::npos);
-  EXPECT_NE(said("d.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n").find("last row"), std::string::npos);
+  EXPECT_NE(said("a.tum", "0 0 0 0 0 0 0 1\n1 0 0 x 0 0 0 1\n").find("line 2, word 4: 'x'"),
+            std::string::npos);
+  EXPECT_NE(said("b.tum", "0 0 0 0 0 0 0 1\n1 0 0\n").find("line 2: has 3 numbers"),
+            std::string::npos);
+  EXPECT_NE(said("c.txt", "1 0 0 0\n0 1 0 0\n").find("ends inside a 4x4 matrix"),
+            std::string::npos);
+  EXPECT_NE(said("d.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n").find("last row"),
+            std::string::npos);
   EXPECT_NE(said("e.txt", "").find("holds no pose"), std::string::npos);
   EXPECT_NE(said("f.txt", "1 2 3 4 5\n").find("has 5 words"), std::string::npos);
   EXPECT_NE(said("g.tum", "0 0 0 0 0 0 0 nan\n").find("not a finite number"), std::string::npos);
@@ -130,7 +141,8 @@ TEST(RealData, BunnyConfPlacesTheScansOnTheBunny) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the Stanford bunny is not in " << folder;
   const auto poses = read_poses(folder / "data" / "bun.conf");
   ASSERT_EQ(poses.size(), 10u);
-  const Bounds surface = bounds_of(read_mesh(folder / "reconstruction" / "bun_zipper.ply").vertices);
+  const Bounds surface =
+      bounds_of(read_mesh(folder / "reconstruction" / "bun_zipper.ply").vertices);
   const Bounds room(surface.min() - Eigen::Vector3d::Constant(0.003),
                     surface.max() + Eigen::Vector3d::Constant(0.003));
   for (const NamedPose& named : poses) {

@@ -28,7 +28,8 @@ Pose pose(double turn) {
 
 StripeImages stripes() {
   StripeImages frames;
-  frames.calibration = {camera, Eigen::Vector3d(1, 0.1, -0.3).normalized(), 0.123456789012345678, sensor, 0.1, 0.9};
+  frames.calibration = {
+      camera, Eigen::Vector3d(1, 0.1, -0.3).normalized(), 0.123456789012345678, sensor, 0.1, 0.9};
   for (int i = 0; i < 3; ++i) {
     frames.images.push_back(frame(static_cast<std::uint64_t>(i)));
     frames.scanner_from_camera.push_back(pose(0.1 * i));
@@ -59,8 +60,10 @@ Waveforms waveforms() {
   frames.grid = {2, 3};
   frames.samples_per_ray = 5;
   RandomStream random(13, 0, 0);
-  for (int i = 0; i < 6; ++i) frames.directions.push_back(Eigen::Vector3d(random.normal(), random.normal(), 1).normalized());
-  for (int i = 0; i < 30; ++i) frames.samples.push_back(static_cast<std::uint16_t>(random.bits32() & 4095));
+  for (int i = 0; i < 6; ++i)
+    frames.directions.push_back(Eigen::Vector3d(random.normal(), random.normal(), 1).normalized());
+  for (int i = 0; i < 30; ++i)
+    frames.samples.push_back(static_cast<std::uint16_t>(random.bits32() & 4095));
   return frames;
 }
 
@@ -79,7 +82,8 @@ template <class Frames>
 Frames round_trip(const TemporaryFolder& folder, const Frames& frames) {
   const RawFrames raw = frames;
   write_raw_frames(folder.path(), raw);
-  const RawFrames back = read_raw_frames(kind_of(raw), {folder.path()}, folder / "calibration.json");
+  const RawFrames back =
+      read_raw_frames(kind_of(raw), {folder.path()}, folder / "calibration.json");
   return std::get<Frames>(back);
 }
 
@@ -105,9 +109,11 @@ TEST(RawFiles, PairsComeBackToTheBit) {
   EXPECT_EQ(a.left.pixels, b.left.pixels);
   EXPECT_EQ(a.right.pixels, b.right.pixels);
   const StereoCalibration &x = a.calibration, &y = b.calibration;
-  EXPECT_EQ(std::tie(x.width_px, x.height_px, x.focal_px, x.cx_px, x.cy_px, x.doffs_px, x.baseline_m),
-            std::tie(y.width_px, y.height_px, y.focal_px, y.cx_px, y.cy_px, y.doffs_px, y.baseline_m));
-  EXPECT_EQ(std::tie(x.min_disparity_px, x.disparities_px), std::tie(y.min_disparity_px, y.disparities_px));
+  EXPECT_EQ(
+      std::tie(x.width_px, x.height_px, x.focal_px, x.cx_px, x.cy_px, x.doffs_px, x.baseline_m),
+      std::tie(y.width_px, y.height_px, y.focal_px, y.cx_px, y.cy_px, y.doffs_px, y.baseline_m));
+  EXPECT_EQ(std::tie(x.min_disparity_px, x.disparities_px),
+            std::tie(y.min_disparity_px, y.disparities_px));
 }
 
 TEST(RawFiles, TapsComeBackToTheBit) {
@@ -119,15 +125,18 @@ TEST(RawFiles, TapsComeBackToTheBit) {
   EXPECT_EQ(a.calibration.max_range_m, b.calibration.max_range_m);
   ASSERT_EQ(b.taps.size(), 2u);
   for (std::size_t f = 0; f < 2; ++f)
-    for (std::size_t tap = 0; tap < 4; ++tap) EXPECT_EQ(a.taps[f][tap].pixels, b.taps[f][tap].pixels);
+    for (std::size_t tap = 0; tap < 4; ++tap)
+      EXPECT_EQ(a.taps[f][tap].pixels, b.taps[f][tap].pixels);
 }
 
 TEST(RawFiles, WaveformsComeBackToTheBit) {
   const TemporaryFolder folder;
   const Waveforms a = waveforms(), b = round_trip(folder, a);
   expect_same(a.calibration.sensor, b.calibration.sensor);
-  EXPECT_EQ(std::tie(a.calibration.sample_interval_s, a.calibration.window_start_s, a.calibration.pulse_sigma_s),
-            std::tie(b.calibration.sample_interval_s, b.calibration.window_start_s, b.calibration.pulse_sigma_s));
+  EXPECT_EQ(std::tie(a.calibration.sample_interval_s, a.calibration.window_start_s,
+                     a.calibration.pulse_sigma_s),
+            std::tie(b.calibration.sample_interval_s, b.calibration.window_start_s,
+                     b.calibration.pulse_sigma_s));
   EXPECT_EQ(a.grid.rows, b.grid.rows);
   EXPECT_EQ(a.grid.columns, b.grid.columns);
   EXPECT_EQ(a.directions, b.directions);
@@ -142,7 +151,8 @@ TEST(RawFiles, MiddleburyCalibrationFollowsItsConvention) {
              "cam0=[994.978 0 311.193; 0 994.978 254.877; 0 0 1]\r\n"
              "cam1=[994.978 0 342.279; 0 994.978 254.877; 0 0 1]\r\n"
              "doffs=31.086\nbaseline=193.001\nwidth=6\nheight=4\nndisp=64\nisint=0\nvmin=7\n");
-  const auto raw = read_raw_frames("stereo", {folder / "left.png", folder / "right.png"}, folder / "calib.txt");
+  const auto raw =
+      read_raw_frames("stereo", {folder / "left.png", folder / "right.png"}, folder / "calib.txt");
   const StereoCalibration& calibration = std::get<ImagePair>(raw).calibration;
   EXPECT_EQ(calibration.focal_px, 994.978);
   EXPECT_EQ(calibration.cx_px, 311.193);
@@ -151,7 +161,9 @@ TEST(RawFiles, MiddleburyCalibrationFollowsItsConvention) {
   EXPECT_EQ(calibration.baseline_m, 193.001 * 1e-3);
   EXPECT_EQ(calibration.disparities_px, 64);
   write_file(folder / "short.txt", "cam0=[1 0 2; 0 1 2; 0 0 1]\n");
-  EXPECT_NE(error_of([&] { read_raw_frames("stereo", {folder.path()}, folder / "short.txt"); }).find("cam1: is missing"),
+  EXPECT_NE(error_of([&] {
+              read_raw_frames("stereo", {folder.path()}, folder / "short.txt");
+            }).find("cam1: is missing"),
             std::string::npos);
 }
 
@@ -165,17 +177,29 @@ TEST(RawFiles, NameFileAndKeyOfWhatIsBroken) {
     write_file(folder / "c.json", text);
     return error_of([&] { read_raw_frames("laser-line", {folder.path()}, folder / "c.json"); });
   };
-  EXPECT_NE(said("\"laser-line\"", "\"phase\"").find("/device: is 'phase', must be 'laser-line'"), std::string::npos);
-  EXPECT_NE(said("\"fx_px\": 100.1", "\"fx_px\": -1").find("/camera/fx_px: is -1, must be positive"), std::string::npos);
-  EXPECT_NE(said("\"bits\": 12", "\"bits\": 17").find("/sensor/bits: is 17, must be 1 to 16"), std::string::npos);
-  EXPECT_NE(said("\"bits\": 12", "\"bits\": 4").find("a sensor of 4 bits ends at 15"), std::string::npos);
+  EXPECT_NE(said("\"laser-line\"", "\"phase\"").find("/device: is 'phase', must be 'laser-line'"),
+            std::string::npos);
+  EXPECT_NE(
+      said("\"fx_px\": 100.1", "\"fx_px\": -1").find("/camera/fx_px: is -1, must be positive"),
+      std::string::npos);
+  EXPECT_NE(said("\"bits\": 12", "\"bits\": 17").find("/sensor/bits: is 17, must be 1 to 16"),
+            std::string::npos);
+  EXPECT_NE(said("\"bits\": 12", "\"bits\": 4").find("a sensor of 4 bits ends at 15"),
+            std::string::npos);
   EXPECT_NE(said("\"k1\"", "\"k9\"").find("/camera/k9: unknown key"), std::string::npos);
-  EXPECT_NE(said("\"width_px\": 6", "\"width_px\": 7").find("is 6 x 4 px, the calibration says 7 x 4"), std::string::npos);
+  EXPECT_NE(
+      said("\"width_px\": 6", "\"width_px\": 7").find("is 6 x 4 px, the calibration says 7 x 4"),
+      std::string::npos);
   std::filesystem::remove(folder / "002.png");
-  EXPECT_NE(error_of([&] { read_raw_frames("laser-line", {folder.path()}, folder / "calibration.json"); })
-                .find("002.png: no such file"), std::string::npos);
-  EXPECT_NE(error_of([&] { read_raw_frames("laser-line", {folder / "000.png", folder / "001.png"}, folder / "calibration.json"); })
-                .find("2 files are given, the calibration needs 3"), std::string::npos);
+  EXPECT_NE(error_of([&] {
+              read_raw_frames("laser-line", {folder.path()}, folder / "calibration.json");
+            }).find("002.png: no such file"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] {
+              read_raw_frames("laser-line", {folder / "000.png", folder / "001.png"},
+                              folder / "calibration.json");
+            }).find("2 files are given, the calibration needs 3"),
+            std::string::npos);
   error_of([&] { read_raw_frames("sonar", {}, folder / "calibration.json"); }, Trouble::usage);
 }
 
@@ -183,7 +207,8 @@ TEST(RawFiles, RefuseWaveformsThatDoNotBelongTogether) {
   const TemporaryFolder folder;
   write_raw_frames(folder.path(), waveforms());
   const auto said = [&] {
-    return error_of([&] { read_raw_frames("waveform", {folder.path()}, folder / "calibration.json"); });
+    return error_of(
+        [&] { read_raw_frames("waveform", {folder.path()}, folder / "calibration.json"); });
   };
   write_npy(folder / "directions.npy", {2, 3}, std::vector<double>{0, 0, 1, 0, 1, 0});
   EXPECT_NE(said().find("has 6 rays"), std::string::npos);
@@ -198,9 +223,12 @@ TEST(RealData, TheMotorcyclePairReads) {
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "the stereo pair is not in " << data;
   const TemporaryFolder folder;
   write_file(folder / "calib.txt",
-             "cam0=[994.978 0 311.193; 0 994.978 254.877; 0 0 1]\ncam1=[994.978 0 342.279; 0 994.978 254.877; 0 0 1]\n"
+             "cam0=[994.978 0 311.193; 0 994.978 254.877; 0 0 1]\ncam1=[994.978 0 342.279; 0 "
+             "994.978 254.877; 0 0 1]\n"
              "doffs=31.086\nbaseline=193.001\nwidth=741\nheight=500\nndisp=70\n");
-  const auto raw = read_raw_frames("stereo", {data / "motorcycle_left.png", data / "motorcycle_right.png"}, folder / "calib.txt");
+  const auto raw =
+      read_raw_frames("stereo", {data / "motorcycle_left.png", data / "motorcycle_right.png"},
+                      folder / "calib.txt");
   EXPECT_EQ(std::get<ImagePair>(raw).left.pixels.size(), 741u * 500u);
 }
 

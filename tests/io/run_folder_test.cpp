@@ -66,7 +66,8 @@ TEST(RunFolder, RefusesAnEarlierRunUnlessAsked) {
 TEST(RunFolder, RefusesAPathThatCannotBeOne) {
   const TemporaryFolder folder;
   write_file(folder / "file", "");
-  EXPECT_NE(error_of([&] { open_run_folder(folder / "file", RunStart::fresh); }, Trouble::output).find("is a file"),
+  EXPECT_NE(error_of([&] { open_run_folder(folder / "file", RunStart::fresh); }, Trouble::output)
+                .find("is a file"),
             std::string::npos);
   error_of([&] { open_run_folder(folder / "file" / "below", RunStart::fresh); }, Trouble::output);
   error_of([] { open_run_folder("/proc/no/run", RunStart::fresh); }, Trouble::output);
@@ -75,7 +76,9 @@ TEST(RunFolder, RefusesAPathThatCannotBeOne) {
 TEST(RunFolder, RefusesABrokenRecord) {
   const TemporaryFolder folder;
   write_file(folder / "stages.json", "{\"stages\": [{\"stage\": 1}]}");
-  EXPECT_NE(error_of([&] { open_run_folder(folder.path(), RunStart::resume); }).find("stages/0/stage"), std::string::npos);
+  EXPECT_NE(
+      error_of([&] { open_run_folder(folder.path(), RunStart::resume); }).find("stages/0/stage"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -102,13 +102,17 @@ TEST(ScanFile, DropsAndCountsPointsThatAreNotFinite) {
 TEST(ScanFile, RefusesFilesWithoutAValidPointAndUnknownEndings) {
   const TemporaryFolder folder;
   write_file(folder / "nan.xyz", "nan 0 0\n0 inf 0\n");
-  EXPECT_NE(error_of([&] { read_scan(folder / "nan.xyz"); }).find("holds no valid point"), std::string::npos);
-  EXPECT_NE(error_of([&] { read_scan(folder / "missing.ply"); }).find("no such file"), std::string::npos);
-  EXPECT_NE(error_of([&] { read_scan(folder / "a.doc"); }).find("'.doc'"), std::string::npos);
-  EXPECT_NE(error_of([&] { write_scan(folder / "a.doc", full_scan()); }, Trouble::output).find("'.doc'"),
+  EXPECT_NE(error_of([&] { read_scan(folder / "nan.xyz"); }).find("holds no valid point"),
             std::string::npos);
+  EXPECT_NE(error_of([&] { read_scan(folder / "missing.ply"); }).find("no such file"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { read_scan(folder / "a.doc"); }).find("'.doc'"), std::string::npos);
+  EXPECT_NE(
+      error_of([&] { write_scan(folder / "a.doc", full_scan()); }, Trouble::output).find("'.doc'"),
+      std::string::npos);
   EXPECT_NE(error_of([&] { write_scan(folder / "no" / "a.ply", full_scan()); }, Trouble::output)
-                .find("cannot be written"), std::string::npos);
+                .find("cannot be written"),
+            std::string::npos);
 }
 
 TEST(ScanFile, RefusesUncertaintyThatIsNone) {
@@ -116,7 +120,8 @@ TEST(ScanFile, RefusesUncertaintyThatIsNone) {
   Scan scan = full_scan();
   scan.cloud.sigma_m[5] = -1;
   write_scan(folder / "sigma.ply", scan);
-  EXPECT_NE(error_of([&] { read_scan(folder / "sigma.ply"); }).find("point 5: sigma_m is -1"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_scan(folder / "sigma.ply"); }).find("point 5: sigma_m is -1"),
+            std::string::npos);
 }
 
 const std::string grid_head =
@@ -140,9 +145,12 @@ TEST(RangeGrid, RefusesImpossibleCells) {
     write_file(folder / "grid.ply", grid_head + cells);
     return error_of([&] { read_scan(folder / "grid.ply"); });
   };
-  EXPECT_NE(said("0\n1 1\n1 0\n0\n0\n1 3\n").find("'range_grid', row 5: vertex 3, there are 3"), std::string::npos);
-  EXPECT_NE(said("0\n1 1\n1 1\n0\n0\n1 2\n").find("row 2: vertex 1 is named twice"), std::string::npos);
-  EXPECT_NE(said("0\n1 1\n2 0 1\n0\n0\n1 2\n").find("row 2: names more than one"), std::string::npos);
+  EXPECT_NE(said("0\n1 1\n1 0\n0\n0\n1 3\n").find("'range_grid', row 5: vertex 3, there are 3"),
+            std::string::npos);
+  EXPECT_NE(said("0\n1 1\n1 1\n0\n0\n1 2\n").find("row 2: vertex 1 is named twice"),
+            std::string::npos);
+  EXPECT_NE(said("0\n1 1\n2 0 1\n0\n0\n1 2\n").find("row 2: names more than one"),
+            std::string::npos);
 }
 
 Mesh tetrahedron() {
@@ -178,15 +186,16 @@ TEST(MeshFile, PointsAloneAreNoMesh) {
   write_scan(folder / "points.ply", full_scan());
   EXPECT_FALSE(holds_triangles(folder / "points.ply"));
   EXPECT_FALSE(holds_triangles(folder / "points.xyz"));
-  EXPECT_NE(error_of([&] { read_mesh(folder / "points.ply"); }).find("holds no triangle"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_mesh(folder / "points.ply"); }).find("holds no triangle"),
+            std::string::npos);
 }
 
 TEST(RealData, TheTenBunnyScansHaveTheirPublishedPoints) {
   const auto folder = outside_data() / "stanford-bunny" / "data";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the Stanford bunny is not in " << folder;
   std::size_t points = 0;
-  for (const char* name : {"bun000", "bun045", "bun090", "bun180", "bun270", "bun315", "top2", "top3",
-                           "chin", "ear_back"}) {
+  for (const char* name : {"bun000", "bun045", "bun090", "bun180", "bun270", "bun315", "top2",
+                           "top3", "chin", "ear_back"}) {
     const Scan scan = read_scan(folder / (std::string(name) + ".ply"));
     EXPECT_EQ(scan.name, name);
     EXPECT_EQ(scan.grid.rows, 400u);
@@ -198,8 +207,8 @@ TEST(RealData, TheTenBunnyScansHaveTheirPublishedPoints) {
   EXPECT_EQ(points, 362272u);  // the number that Stanford publishes
 }
 
-// Columns step 0.5 mm in x; other rows are shifted by half a column (the data's README): a ray index
-// that is one column or row off would break this.
+// Columns step 0.5 mm in x; other rows are shifted by half a column (the data's README): a ray
+// index that is one column or row off would break this.
 TEST(RealData, BunnyRaysFollowTheirColumns) {
   const auto file = outside_data() / "stanford-bunny" / "data" / "bun000.ply";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "the Stanford bunny is not at " << file;

@@ -25,11 +25,17 @@ Pose pose() {
 
 // Walks the variant: a new kind must be written and read back as itself.
 std::vector<Shape> one_of_each() {
-  CombinedShape inner{CombinedShape::Operation::intersect, 0, {{Pose::Identity(), SphereShape{0.1}}}};
-  CombinedShape outer{CombinedShape::Operation::subtract, 1.0 / 7,
+  CombinedShape inner{
+      CombinedShape::Operation::intersect, 0, {{Pose::Identity(), SphereShape{0.1}}}};
+  CombinedShape outer{CombinedShape::Operation::subtract,
+                      1.0 / 7,
                       {{pose(), BoxShape{{0.1, 1.0 / 3, 2}, 0.01}}, {pose().inverse(), inner}}};
-  return {PlaneShape{}, SphereShape{1.0 / 3}, CylinderShape{0.1, 0.7}, BoxShape{{0.3, 0.2, 0.1}, 0.05},
-          TorusShape{0.3, 0.1}, outer};
+  return {PlaneShape{},
+          SphereShape{1.0 / 3},
+          CylinderShape{0.1, 0.7},
+          BoxShape{{0.3, 0.2, 0.1}, 0.05},
+          TorusShape{0.3, 0.1},
+          outer};
 }
 
 TEST(ShapeJson, BringsBackEachShapeToTheBit) {
@@ -40,7 +46,8 @@ TEST(ShapeJson, BringsBackEachShapeToTheBit) {
     const std::string text = to_json(shapes[kind]).dump();
     const Shape back = parse(text);
     EXPECT_EQ(back.index(), kind);
-    EXPECT_EQ(to_json(back).dump(), text);  // as numbers are written exactly, equal text is equal bits
+    EXPECT_EQ(to_json(back).dump(),
+              text);  // as numbers are written exactly, equal text is equal bits
     RandomStream random(1, 0, kind);
     for (int i = 0; i < 50; ++i) {
       const double x = random.normal(), y = random.normal();
@@ -58,19 +65,24 @@ TEST(ShapeJson, ReadsTheKeysOfTheHeader) {
       R"({"unite":{"blend_mm":3,"parts":[{"shape":{"plane":{}},"position_mm":[0,0,5],"rotation_deg":[90,0,0]}]}})"));
   EXPECT_EQ(joined.blend_m, 0.003);
   // a quarter turn about x carries z to -y
-  EXPECT_LT((joined.parts[0].parent_from_shape * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(0, -1, 0.005)).norm(), 1e-15);
+  EXPECT_LT(
+      (joined.parts[0].parent_from_shape * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(0, -1, 0.005))
+          .norm(),
+      1e-15);
 }
 
 TEST(ShapeJson, NamesThePlaceOfWhatIsBroken) {
-  const auto said = [](const std::string& text) {
-    return error_of([&] { parse(text); });
-  };
-  EXPECT_NE(said(R"({"sphere":{"radius_mm":-1}})").find("shape.json/sphere: sphere: radius"), std::string::npos);
-  EXPECT_NE(said(R"({"sphere":{"radius":1}})").find("shape.json/sphere/radius: is missing"), std::string::npos);
-  EXPECT_NE(said(R"({"sphere":{"radius_mm":1,"radius_m":1}})").find("two units"), std::string::npos);
+  const auto said = [](const std::string& text) { return error_of([&] { parse(text); }); };
+  EXPECT_NE(said(R"({"sphere":{"radius_mm":-1}})").find("shape.json/sphere: sphere: radius"),
+            std::string::npos);
+  EXPECT_NE(said(R"({"sphere":{"radius":1}})").find("shape.json/sphere/radius: is missing"),
+            std::string::npos);
+  EXPECT_NE(said(R"({"sphere":{"radius_mm":1,"radius_m":1}})").find("two units"),
+            std::string::npos);
   EXPECT_NE(said(R"({"sphere":{},"box":{}})").find("has 2"), std::string::npos);
   EXPECT_EQ(said(R"({"shpere":{"radius_mm":1}})"), "shape.json/shpere: unknown shape");
-  EXPECT_NE(said(R"({"unite":{"parts":[{"shape":{"sphere":{"radius_mm":0}}}]}})").find("/unite/parts/0/shape/sphere"),
+  EXPECT_NE(said(R"({"unite":{"parts":[{"shape":{"sphere":{"radius_mm":0}}}]}})")
+                .find("/unite/parts/0/shape/sphere"),
             std::string::npos);
   EXPECT_NE(said(R"({"unite":{"parts":[]}})").find("no parts"), std::string::npos);
   std::string deep = R"({"sphere":{"radius_mm":1}})";
@@ -83,9 +95,11 @@ TEST(PoseJson, RefusesWhatIsNoPose) {
     return error_of([&] { pose_from_json(nlohmann::json::parse(text), "here"); });
   };
   EXPECT_NE(said("[1,2]").find("here: must be a 4x4 matrix"), std::string::npos);
-  EXPECT_NE(said("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,null]]").find("row 3, column 3"), std::string::npos);
+  EXPECT_NE(said("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,null]]").find("row 3, column 3"),
+            std::string::npos);
   EXPECT_NE(said("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]").find("last row"), std::string::npos);
-  EXPECT_NE(said("[[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]").find("away from a rotation"), std::string::npos);
+  EXPECT_NE(said("[[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]").find("away from a rotation"),
+            std::string::npos);
 }
 
 }  // namespace

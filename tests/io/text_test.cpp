@@ -31,7 +31,8 @@ TEST(Numbers, OfAnyBitPatternComeBackToTheBit) {
 }
 
 TEST(Numbers, AtTheEdgesOfTheirTypeAreExactOrRefused) {
-  EXPECT_EQ(number_from<double>("4.9406564584124654e-324"), std::numeric_limits<double>::denorm_min());
+  EXPECT_EQ(number_from<double>("4.9406564584124654e-324"),
+            std::numeric_limits<double>::denorm_min());
   EXPECT_EQ(number_from<double>("1e-400"), 0.0);
   EXPECT_EQ(number_from<double>("1e400"), std::nullopt);
   EXPECT_EQ(number_from<float>("1e39"), std::nullopt);
@@ -43,7 +44,8 @@ TEST(Numbers, AtTheEdgesOfTheirTypeAreExactOrRefused) {
 }
 
 TEST(Numbers, TakeTheWholeWordOrNothing) {
-  for (const char* word : {"", "+", "-", "1.5x", "1,5", "0x10", " 1", "1 ", "+-1", "1e", "--1", "abc"})
+  for (const char* word :
+       {"", "+", "-", "1.5x", "1,5", "0x10", " 1", "1 ", "+-1", "1e", "--1", "abc"})
     EXPECT_EQ(number_from<double>(word), std::nullopt) << "'" << word << "'";
   EXPECT_EQ(number_from<double>("+2.5"), 2.5);
   EXPECT_EQ(number_from<int>("1.0"), std::nullopt);
