@@ -8,7 +8,7 @@
 #include <array>
 #include <limits>
 
-#include "clouds.h"
+#include "tests/search/clouds.h"
 #include "libscan/core/error.h"
 
 namespace scan {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clouds.h"
+#include "tests/search/clouds.h"
 
 namespace scan {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "clouds.h"
+#include "tests/search/clouds.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {

@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "clouds.h"
+#include "tests/search/clouds.h"
 #include "libscan/core/error.h"
 
 namespace scan {
