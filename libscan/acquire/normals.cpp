@@ -126,8 +126,7 @@ void fit_planes(Scan& scan, std::span<const Eigen::Vector3d> viewpoints, Around&
       around(static_cast<std::uint32_t>(i), widening, neighbours);
       normal = plane_normal(cloud, neighbours);
     }
-    const Eigen::Vector3d viewpoint =
-        viewpoints.empty() ? Eigen::Vector3d::Zero().eval() : viewpoints[i];
+    const Eigen::Vector3d viewpoint = viewpoints.empty() ? scan.viewpoint : viewpoints[i];
     if (normal.dot(viewpoint - cloud.points[i]) < 0) normal = -normal;
   });
 }

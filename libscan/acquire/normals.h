@@ -12,11 +12,11 @@ struct NormalOptions {
 };
 
 // Fills scan.cloud.normals by plane fits over the nearest points (weighted by sigma where known)
-// and turns each towards the scanner's origin. With a grid the nearest are those of a square of
+// and turns each towards scan.viewpoint. With a grid the nearest are those of a square of
 // rays without a jump in depth, else the nearest in space. A neighbourhood that fixes no plane is
 // widened twice, then gives (0, 0, 0).
-// For a laser-line scan, whose viewpoint moves, `viewpoints` has one origin per point; empty: the
-// origin.
+// For a laser-line scan, whose viewpoint moves, `viewpoints` has one per point; empty:
+// scan.viewpoint for all.
 void estimate_normals(Scan& scan, const NormalOptions& options = {},
                       std::span<const Eigen::Vector3d> viewpoints = {});
 

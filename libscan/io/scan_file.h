@@ -11,13 +11,14 @@
 namespace scan {
 
 // .ply .pcd .xyz .txt .asc .npy: points with what else the file knows. A PLY with a `range_grid`
-// element (Stanford) gets its grid and ray indices; one that libscan wrote gets everything back.
+// element (Stanford) gets its grid, ray indices and viewpoint (scan_ply.h); one that libscan wrote
+// gets everything back.
 // The name is the file's stem. Points that are not finite are dropped and counted in misses["not
 // finite"]. Throws scan::Error (input) for a file with no valid point.
 Scan read_scan(const std::filesystem::path& path);
 
-// .ply keeps everything of a Scan (misses, grid, guess as comments); .pcd and .xyz keep points,
-// normals and intensity. Written whole or not at all.
+// .ply keeps everything of a Scan (misses, grid, viewpoint, guess as comments); .pcd and .xyz keep
+// points, normals and intensity. Written whole or not at all.
 void write_scan(const std::filesystem::path& path, const Scan& scan);
 
 // .ply .obj .stl .off .glb .gltf: a triangle mesh, vertices welded for formats without topology

@@ -15,6 +15,7 @@ namespace scan {
 namespace {
 
 constexpr std::uint32_t no_ray = std::numeric_limits<std::uint32_t>::max();
+const Eigen::Vector3d stanford_viewpoint_m(0, 0, 100);
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
   throw Error(Trouble::input, path.string() + ": " + what);
@@ -39,6 +40,23 @@ Pose parse_guess(std::string_view words, const std::filesystem::path& path) {
   return pose_from_matrix(matrix, path.string() + ": " + key);
 }
 
+std::string viewpoint_comment(const Eigen::Vector3d& viewpoint) {
+  std::string text = "libscan viewpoint";
+  for (const double x : viewpoint) text += " " + shortest(x);
+  return text;
+}
+
+Eigen::Vector3d parse_viewpoint(std::string_view words, const std::filesystem::path& path) {
+  Eigen::Vector3d viewpoint;
+  for (double& x : viewpoint) {
+    const auto number = number_from<double>(take_word(words));
+    if (!number || !std::isfinite(*number))
+      fail(path, "comment 'libscan viewpoint' must hold 3 finite numbers");
+    x = *number;
+  }
+  return viewpoint;
+}
+
 template <class Number>
 Number parse_whole(std::string_view& words, const std::filesystem::path& path) {
   const std::string word(take_word(words));
@@ -56,6 +74,8 @@ void parse_comment(std::string_view words, Scan& scan, const std::filesystem::pa
   } else if (key == "miss") {
     const auto count = parse_whole<std::size_t>(words, path);
     scan.misses[std::string(words.substr(std::min<std::size_t>(1, words.size())))] += count;
+  } else if (key == "viewpoint") {
+    scan.viewpoint = parse_viewpoint(words, path);
   } else if (key == "world_from_scanner_guess") {
     scan.world_from_scanner_guess = parse_guess(words, path);
   }
@@ -113,6 +133,7 @@ void parse_range_grid(const Ply& ply, const PlyElement& element, Scan& scan,
                      std::to_string(*columns));
     scan.grid = {*rows, *columns};
   }
+  scan.viewpoint = stanford_viewpoint_m;
   auto rays = rays_of(*cells, scan.cloud.size(), path);
   const auto empty = std::count(cells->lengths.begin(), cells->lengths.end(), 0u);
   if (empty > 0) scan.misses["not recorded"] = static_cast<std::size_t>(empty);
@@ -136,6 +157,7 @@ Ply ply_from(const Scan& scan) {
                            std::to_string(scan.grid.columns));
   for (const auto& [reason, count] : scan.misses)
     ply.comments.push_back("libscan miss " + std::to_string(count) + " " + reason);
+  ply.comments.push_back(viewpoint_comment(scan.viewpoint));
   ply.comments.push_back(guess_comment(scan.world_from_scanner_guess));
   return ply;
 }

@@ -5,6 +5,7 @@
 // Beside what ply.h knows of clouds: vertex property `ray`, and comments
 //   libscan grid ROWS COLUMNS
 //   libscan miss COUNT REASON
+//   libscan viewpoint X Y Z
 //   libscan world_from_scanner_guess (16 numbers, row by row)
 #pragma once
 
@@ -19,7 +20,9 @@ Ply ply_from(const Scan& scan);
 
 // Reads a `range_grid` element too (Stanford): lists of no or one vertex, row by row; rows and
 // columns from the obj_info lines num_rows and num_cols. Its empty cells count as misses["not
-// recorded"]. A vertex that the grid does not name leaves `ray` empty.
+// recorded"]. A vertex that the grid does not name leaves `ray` empty. The viewpoint becomes
+// (0, 0, 100) m: those scanners look along -z of the scan's frame, from a place that the file does
+// not tell; seen from 100 m on, all rays over an object of 0.1 m are parallel to 1 mrad.
 Scan scan_from(const Ply& ply, const std::filesystem::path& path);
 
 }  // namespace scan

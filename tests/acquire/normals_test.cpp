@@ -71,6 +71,17 @@ TEST(Normals, TurnTowardsEachPointsViewpoint) {
   for (int i = 0; i < 100; ++i) EXPECT_NEAR(scan.cloud.normals[i].z(), i < 50 ? -1 : 1, 1e-12);
 }
 
+TEST(Normals, TurnTowardsTheScansViewpoint) {
+  for (const bool grid : {true, false})
+    for (const double side : {-1.0, 1.0}) {
+      Scan scan = grid_scan(10, 10, plane({0, 0, 1}, 1));
+      if (!grid) scan.grid = {};
+      scan.viewpoint = {0, 0, 100 * side};
+      estimate_normals(scan);
+      for (const auto& normal : scan.cloud.normals) EXPECT_NEAR(normal.z(), side, 1e-12);
+    }
+}
+
 // Steps ten times as far apart as the pixels of a step: nearest points would be one line.
 TEST(Normals, UseBothDirectionsOfTheGrid) {
   Scan scan;

@@ -34,6 +34,7 @@ Scan full_scan() {
   }
   scan.grid = {30, 20};
   scan.misses = {{"no signal", 390}, {"out of range", 10}};
+  scan.viewpoint = {0.1, -1.0 / 3, 1e7};
   Vector6 twist;
   twist << 0.3, -2, 1, 0.1, 1e3, 1e-9;
   scan.world_from_scanner_guess = exp(twist);
@@ -59,6 +60,7 @@ TEST(ScanFile, PlyBringsBackEverythingToTheBit) {
   EXPECT_EQ(back.grid.rows, scan.grid.rows);
   EXPECT_EQ(back.grid.columns, scan.grid.columns);
   EXPECT_EQ(back.misses, scan.misses);
+  EXPECT_EQ(back.viewpoint, scan.viewpoint);
   EXPECT_EQ(back.world_from_scanner_guess.matrix(), scan.world_from_scanner_guess.matrix());
 }
 
@@ -71,6 +73,7 @@ TEST(ScanFile, PlyOfPointsAloneBringsBackPointsAlone) {
   expect_same_cloud(back.cloud, scan.cloud);
   EXPECT_TRUE(back.ray.empty());
   EXPECT_TRUE(back.misses.empty());
+  EXPECT_EQ(back.viewpoint, Eigen::Vector3d(0, 0, 0));
 }
 
 TEST(ScanFile, PcdAndXyzBringBackPointsNormalsAndIntensityToTheBit) {
@@ -115,6 +118,19 @@ TEST(ScanFile, RefusesFilesWithoutAValidPointAndUnknownEndings) {
             std::string::npos);
 }
 
+TEST(ScanFile, RefusesAViewpointThatIsNone) {
+  const TemporaryFolder folder;
+  for (const char* viewpoint : {"0 0", "0 0 x", "0 nan 0"}) {
+    write_file(folder / "v.ply", std::string("ply\nformat ascii 1.0\ncomment libscan viewpoint ") +
+                                     viewpoint +
+                                     "\nelement vertex 1\nproperty float x\nproperty float y\n"
+                                     "property float z\nend_header\n0 0 1\n");
+    EXPECT_NE(error_of([&] { read_scan(folder / "v.ply"); }).find("'libscan viewpoint'"),
+              std::string::npos)
+        << viewpoint;
+  }
+}
+
 TEST(ScanFile, RefusesUncertaintyThatIsNone) {
   const TemporaryFolder folder;
   Scan scan = full_scan();
@@ -137,6 +153,13 @@ TEST(RangeGrid, GivesEachVertexItsRay) {
   EXPECT_EQ(scan.grid.columns, 3u);
   EXPECT_EQ(scan.ray, (std::vector<std::uint32_t>{2, 1, 5}));
   EXPECT_EQ(scan.misses.at("not recorded"), 3u);
+}
+
+// Those scanners look along -z: the sensor is far up the z axis.
+TEST(RangeGrid, IsSeenFromFarUpTheZAxis) {
+  const TemporaryFolder folder;
+  write_file(folder / "grid.ply", grid_head + "0\n1 1\n1 0\n0\n0\n1 2\n");
+  EXPECT_EQ(read_scan(folder / "grid.ply").viewpoint, Eigen::Vector3d(0, 0, 100));
 }
 
 TEST(RangeGrid, RefusesImpossibleCells) {
