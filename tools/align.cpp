@@ -96,10 +96,10 @@ int align_files(const Arguments& arguments, Console& console) {
                 readable_value(100 * pose.inlier_fraction_of_source, "count") + " %");
     complete &= tell_of_pose(inputs[i], pose, console);
   }
-  console.finish("align", complete ? "ok" : "not aligned", json);
   if (!complete)
     throw Error(Trouble::computation, "not every scan could be aligned; " + output +
                                           "/alignment.json says which and why");
+  console.finish("align", "ok", json);
   return 0;
 }
 
