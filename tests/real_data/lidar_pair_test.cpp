@@ -22,8 +22,8 @@ struct Result {
 };
 
 // The target is the anchor and keeps its pose, so the source's pose is target_from_source.
-Result align(const Pose& target_from_source_guess, std::vector<std::string> options = {}) {
-  const Folder out;
+Answer align_into(const Folder& out, const Pose& target_from_source_guess,
+                  const std::vector<std::string>& options = {}) {
   std::ostringstream guesses;
   guesses.precision(17);
   guesses << Pose::Identity().matrix() << "\n" << target_from_source_guess.matrix() << "\n";
@@ -35,10 +35,18 @@ Result align(const Pose& target_from_source_guess, std::vector<std::string> opti
                                      "--init",
                                      (out / "guesses.txt").string()};
   arguments.insert(arguments.end(), options.begin(), options.end());
-  const Answer answer = ask_scan(arguments);
-  EXPECT_EQ(answer.exit_code, 0) << answer.err;
+  return ask_scan(arguments);
+}
+
+nlohmann::json alignment(const Folder& out) {
+  return nlohmann::json::parse(slurp(out / "aligned/alignment.json"));
+}
+
+Result align(const Pose& target_from_source_guess, const std::vector<std::string>& options = {}) {
+  const Folder out;
+  align_into(out, target_from_source_guess, options);
+  const auto source = alignment(out).at("scans").at(1);
   const Pose found = read_poses(out / "aligned/alignment.json").at(1).pose;
-  const auto& source = answer.json.at("scans").at(1);
   const Result result{source.at("stop"), deg_from_rad(rotation_distance_rad(found, published())),
                       translation_distance_m(found, published())};
   std::cout << "  " << result.stop << ", " << result.rotation_off_deg << " deg and "
@@ -70,6 +78,17 @@ TEST(LidarPair, WrongMinimumIsNotCalledConverged) {
   SKIP_WITHOUT(folder);
   const Result result = align(Pose::Identity());
   EXPECT_TRUE(is_right(result) || result.stop != "converged");
+}
+
+// A kilometre apart nothing overlaps: exit code 4 (computation) and one JSON object that says so.
+TEST(LidarPair, NoOverlapIsAnError) {
+  SKIP_WITHOUT(folder);
+  const Folder out;
+  const Answer answer = align_into(out, Pose(Eigen::Translation3d(1000, 0, 0)));
+  EXPECT_EQ(answer.exit_code, 4) << answer.err;
+  ASSERT_TRUE(answer.json.is_object());
+  EXPECT_EQ(answer.json.at("status"), "error");
+  EXPECT_EQ(alignment(out).at("scans").at(1).at("stop"), "no correspondences");
 }
 
 }  // namespace
