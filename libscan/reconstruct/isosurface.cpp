@@ -229,6 +229,7 @@ class Polygonizer {
     int at = 0;
     for (int k = 0; k < c.polygons.loops; ++k) {
       std::vector<std::uint32_t> loop;
+      loop.reserve(c.polygons.sizes[k]);
       for (int i = 0; i < c.polygons.sizes[k]; ++i)
         loop.push_back(vertex_of(c, c.polygons.edges[at++]));
       if (needs_centre(c.polygons.sizes[k])) {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "scanner_scenes.h"
+#include "tests/synth/scanner_scenes.h"
 #include "synth/scanners/laser_line_optics.h"
 
 namespace scan::synth {

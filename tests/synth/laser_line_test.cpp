@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "laser_bench.h"
+#include "tests/synth/laser_bench.h"
 
 namespace scan::synth {
 namespace {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "laser_bench.h"
+#include "tests/synth/laser_bench.h"
 
 namespace scan::synth {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "ray_scenes.h"
+#include "tests/synth/ray_scenes.h"
 #include "synth/ray_caster.h"
 
 namespace scan::synth {

@@ -9,7 +9,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
-#include "ray_scenes.h"
+#include "tests/synth/ray_scenes.h"
 
 namespace scan::synth {
 namespace {
