@@ -91,13 +91,10 @@ int align_files(const Arguments& arguments, Console& console) {
   bool complete = true;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const ScanPose& pose = result.scans[i];
-    const bool anchor = static_cast<int>(i) == options.anchor;
-    complete &= anchor || pose.stop == Stop::converged || pose.stop == Stop::degenerate;
     console.say(inputs[i] + ": " + std::string(name_of(pose.stop)) + ", rms " +
                 readable_length(pose.rms_m) + ", inliers " +
                 readable_value(100 * pose.inlier_fraction_of_source, "count") + " %");
-    for (const std::string& direction : pose.weak_directions)
-      console.warn(inputs[i] + ": the data leave it free to " + direction);
+    complete &= tell_of_pose(inputs[i], pose, console);
   }
   console.finish("align", complete ? "ok" : "not aligned", json);
   if (!complete)

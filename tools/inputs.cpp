@@ -40,6 +40,15 @@ std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths,
   return scans;
 }
 
+bool tell_of_pose(const std::string& scan, const ScanPose& pose, Console& console) {
+  for (const std::string& direction : pose.weak_directions)
+    console.warn(scan + ": the data leave it free to " + direction);
+  if (pose.stop == Stop::iteration_limit)
+    console.warn(scan + ": its pose still moved at the last round");
+  return pose.stop == Stop::converged || pose.stop == Stop::degenerate ||
+         pose.stop == Stop::iteration_limit;
+}
+
 PointCloud joined(const std::vector<Scan>& scans, const std::vector<Pose>& world_from_scan) {
   PointCloud all = transformed(world_from_scan.front(), scans.front().cloud);
   for (std::size_t i = 1; i < scans.size(); ++i)

@@ -78,6 +78,15 @@ Shape read_object_shape(JsonReader& reader) {
   return shape;
 }
 
+// Errors name the recipe's place as well as the file.
+Mesh read_object_mesh(const std::filesystem::path& file, const JsonReader& reader) {
+  try {
+    return read_mesh(file);
+  } catch (const Error& error) {
+    throw Error(error.trouble(), reader.place() + "/mesh: " + error.what(), error.hint());
+  }
+}
+
 void read_object(JsonReader reader, const std::map<std::string, int>& materials,
                  const std::filesystem::path& folder, RecipeScene& scene) {
   synth::Object object;
@@ -87,7 +96,7 @@ void read_object(JsonReader reader, const std::map<std::string, int>& materials,
     if (reader.has("shape")) reader.fail("mesh", "stands beside a shape; an object has one of them");
     file = std::filesystem::absolute(folder / reader.text("mesh")).lexically_normal();
     unit_m = look_up(mesh_units, reader.text("unit"), reader, "unit");
-    Mesh mesh = read_mesh(file);
+    Mesh mesh = read_object_mesh(file, reader);
     for (auto& vertex : mesh.vertices) vertex *= unit_m;
     object.geometry = std::move(mesh);
   } else {

@@ -21,10 +21,12 @@ void fields(Fields& f, AcquireOptions& o) {
   f.object("laser_line", [&](Fields& s) {
     enumeration(s, "peak", o.laser_line.peak, {"centroid", "gaussian", "parabola"});
     s.number("threshold_sigmas", o.laser_line.threshold_sigmas);
+    s.number("max_shape_error", o.laser_line.max_shape_error);
   });
   f.object("stereo", [&](Fields& s) {
     s.integer("block_px", o.stereo.block_px);
     s.number("max_left_right_px", o.stereo.max_left_right_px);
+    s.integer("edge_margin_px", o.stereo.edge_margin_px);
     s.number("disparity_sigma_px", o.stereo.disparity_sigma_px);
   });
   f.object("phase", [&](Fields& s) {

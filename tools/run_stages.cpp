@@ -61,15 +61,10 @@ void align_run(const std::filesystem::path& run, const Recipe& recipe, Console& 
   write_json(run / "alignment.json",
              alignment_json(scan_files(scans.size()), result, recipe.align.icp));
   write_poses_tum(run / "poses.tum", poses);
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    const ScanPose& pose = result.scans[i];
-    for (const std::string& direction : pose.weak_directions)
-      console.warn("scan " + scan_name(i) + ": the data leave it free to " + direction);
-    if (static_cast<int>(i) != recipe.align.anchor && pose.stop != Stop::converged &&
-        pose.stop != Stop::degenerate)
-      throw Error(Trouble::computation,
-                  "scan " + scan_name(i) + " could not be aligned: " + std::string(name_of(pose.stop)));
-  }
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    if (!tell_of_pose("scan " + scan_name(i), result.scans[i], console))
+      throw Error(Trouble::computation, "scan " + scan_name(i) + " could not be aligned: " +
+                                            std::string(name_of(result.scans[i].stop)));
 }
 
 void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Console& console) {

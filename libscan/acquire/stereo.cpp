@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "libscan/acquire/depth_edges.h"
 #include "libscan/acquire/disparity_refinement.h"
 #include "libscan/acquire/ray_outcome.h"
 #include "libscan/acquire/reason.h"
@@ -52,6 +53,8 @@ void check(const ImagePair& pair, const StereoOptions& options) {
                                       std::to_string(c.height_px));
   require(options.block_px >= 1 && options.block_px % 2 == 1 && options.block_px <= 31, "block_px",
           options.block_px, "odd, 1 to 31");
+  require(options.edge_margin_px >= 0 && options.edge_margin_px <= 100, "edge_margin_px",
+          options.edge_margin_px, "0 to 100");
   require(options.max_left_right_px > 0, "max_left_right_px", options.max_left_right_px,
           "positive");
 }
@@ -87,6 +90,13 @@ std::string_view fault(const ImagePair& pair, const StereoOptions& options,
   return reason::inconsistent;
 }
 
+void reject(decoding::RefinedDisparity& refined, std::size_t pixel, std::string_view why,
+            std::map<std::string, std::size_t>& misses) {
+  refined.disparity_px.pixels[pixel] = std::numeric_limits<float>::quiet_NaN();
+  refined.sigma_px.pixels[pixel] = std::numeric_limits<float>::quiet_NaN();
+  ++misses[std::string(why)];
+}
+
 // The matcher's smoothness also finds agreement in noise. The best of a hundred windows of 7 x 7
 // unrelated pixels correlates by about 2.5 / 7.
 void reject_uncorrelated(decoding::RefinedDisparity& refined,
@@ -94,10 +104,15 @@ void reject_uncorrelated(decoding::RefinedDisparity& refined,
   constexpr float least_correlation = 0.4f;
   for (std::size_t i = 0; i < refined.correlation.pixels.size(); ++i) {
     if (!(refined.correlation.pixels[i] < least_correlation)) continue;
-    refined.disparity_px.pixels[i] = std::numeric_limits<float>::quiet_NaN();
-    refined.sigma_px.pixels[i] = std::numeric_limits<float>::quiet_NaN();
-    ++misses[std::string(reason::inconsistent)];
+    reject(refined, i, reason::inconsistent, misses);
   }
+}
+
+void reject_depth_edges(int margin_px, decoding::RefinedDisparity& refined,
+                        std::map<std::string, std::size_t>& misses) {
+  const std::vector<char> near = decoding::near_depth_edge(refined.disparity_px, margin_px);
+  for (std::size_t i = 0; i < near.size(); ++i)
+    if (near[i]) reject(refined, i, reason::border, misses);
 }
 
 }  // namespace
@@ -125,6 +140,7 @@ DisparityMap match(const ImagePair& pair, const StereoOptions& options) {
   decoding::RefinedDisparity refined = decoding::refine(
       pair.left, pair.right, disparity, options.block_px, options.max_left_right_px / 3);
   reject_uncorrelated(refined, map.misses);
+  if (options.edge_margin_px > 0) reject_depth_edges(options.edge_margin_px, refined, map.misses);
   map.disparity_px = std::move(refined.disparity_px);
   map.sigma_px = std::move(refined.sigma_px);
   if (options.disparity_sigma_px > 0)

@@ -11,6 +11,7 @@ namespace scan {
 struct StereoOptions {
   int block_px = 5;               // matching window (odd)
   double max_left_right_px = 1;   // left-right check
+  int edge_margin_px = 0;         // drop matches this near to a depth edge (see depth_edges.h)
   double disparity_sigma_px = 0;  // 0: estimated per pixel from texture and residual
 };
 
@@ -24,7 +25,7 @@ struct DisparityMap {
 };
 
 // No texture along the row: no signal; not unique, or an island of its own (a speckle): ambiguous;
-// partner outside the right image: border; left-right check, or windows that do not correlate:
+// partner outside the right image, or too near to a depth edge: border; left-right check, or windows that do not correlate:
 // inconsistent. A pattern that repeats within the search range without end is beyond these checks:
 // one of its places is taken.
 DisparityMap match(const ImagePair& pair, const StereoOptions& options = {});

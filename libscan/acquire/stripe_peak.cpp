@@ -42,6 +42,23 @@ std::optional<Location> fit_stripe(std::span<const double> signal_e, const Strip
   return fit;
 }
 
+// Whether the samples deviate from the fitted Gaussian by more than `max_shape_error` of its height and
+// noise together. The noise part is the mean variance, uncertain by sqrt(2 sum v^2) / n; three sigma.
+bool is_misshapen(const Samples& samples, const Gaussian& shape, double max_shape_error) {
+  double excess = 0, variance2 = 0;
+  for (std::size_t i = 0; i < samples.signal_e.size(); ++i) {
+    const double u = (samples.first + static_cast<double>(i) - shape.centre) / shape.sigma;
+    const double model = shape.amplitude * std::exp(-u * u / 2);
+    const double variance = samples.background_variance_e2 + model;
+    const double residual = samples.signal_e[i] - model;
+    excess += residual * residual - variance;
+    variance2 += variance * variance;
+  }
+  const double allowed = max_shape_error * shape.amplitude;
+  return excess > allowed * allowed * static_cast<double>(samples.signal_e.size()) +
+                      3 * std::sqrt(2 * variance2);
+}
+
 // Zero crossing of the antisymmetric difference filter g(i) = sum_k f(i + k) - f(i - k), k = 1..h
 // (Blais and Rioux, Signal Processing 11, 1986; there h = 1, 2 or 4). Here h follows the stripe,
 // two sigma, which is near the best for shot noise. Between two columns g is taken as straight,
@@ -90,6 +107,9 @@ StripePeak locate_stripe(std::span<const double> row_e, const Sensor& sensor,
   const double reach = 3 * peak->shape.sigma;
   if (peak->shape.centre - reach < -0.5 || peak->shape.centre + reach > row_e.size() - 0.5)
     return {.miss = reason::border};
+  if (is_misshapen(samples_in(signal_e, stripe, window_of(stripe, peak->shape)), peak->shape,
+                   options.max_shape_error))
+    return {.miss = reason::inconsistent};
   const double height_e = peak->shape.amplitude;
   if (options.peak == PeakMethod::centroid)
     peak = centroid(samples_in(signal_e, stripe, {stripe.first, stripe.last}), peak->shape);

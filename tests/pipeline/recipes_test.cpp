@@ -43,8 +43,8 @@ TEST_P(Recipes, MeetTheirLimits) {
   EXPECT_EQ(outcome.exit_code, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Recipes, testing::ValuesIn(recipes()), [](const auto& info) {
-  std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(All, Recipes, testing::ValuesIn(recipes()), [](const auto& recipe) {
+  std::string name = recipe.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });

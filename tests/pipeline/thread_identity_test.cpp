@@ -14,6 +14,9 @@ struct Device {
   std::string name, scanner, radius;
 };
 
+// How GoogleTest names a case in its messages.
+void PrintTo(const Device& device, std::ostream* out) { *out << device.name; }
+
 std::vector<Device> devices() {
   return {{"laser_line", R"("laser_line": { "camera": { "width_px": 120, "height_px": 90, "focal_px": 260 },
              "baseline_mm": 120, "triangulation_deg": 20, "beam_radius_mm": 1.5, "steps": 60, "step_mm": 1.5,
@@ -71,7 +74,7 @@ TEST_P(ThreadIdentity, EveryFileOfARunIsTheSame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, ThreadIdentity, testing::ValuesIn(devices()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& device) { return device.param.name; });
 
 }  // namespace
 }  // namespace scan::test

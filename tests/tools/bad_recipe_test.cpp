@@ -11,17 +11,21 @@ namespace {
 const char* const good_recipe = R"({
   "libscan": 1, "name": "small", "seed": 3,
   "scene": {
-    "objects": [ { "shape": { "sphere": { "radius_mm": 25 } }, "material": "clay" } ],
+    "objects": [ { "shape": "bud", "material": "clay" },
+                 { "shape": { "sphere": { "radius_mm": 25 } }, "position_mm": [60, 0, 0], "material": "clay" } ],
     "materials": { "clay": { "diffuse": 0.6 } } },
   "scanner": { "phase_camera": {
-    "camera": { "width_px": 40, "height_px": 30, "focal_px": 60 },
+    "camera": { "width_px": 80, "height_px": 60, "focal_px": 160 },
     "frequencies_mhz": [80], "max_range_m": 1.5 } },
-  "viewpoints": { "ring": { "count": 2, "radius_mm": 400 } },
+  "viewpoints": { "ring": { "count": 8, "radius_mm": 400 } },
   "reconstruct": { "method": "ssd", "depth": 4 } })";
 
 struct Slip {
   std::string from, to, mentions;
 };
+
+// How GoogleTest names a case in its messages.
+void PrintTo(const Slip& slip, std::ostream* out) { *out << slip.to; }
 
 class BadRecipe : public testing::TestWithParam<Slip> {};
 
@@ -55,9 +59,9 @@ INSTANTIATE_TEST_SUITE_P(
              "gone.stl"},
         Slip{"\"material\": \"clay\"", "\"material\": \"caly\"", "did you mean 'clay'"},
         Slip{"phase_camera", "phase_camrea", "did you mean 'phase_camera'"},
-        Slip{"\"width_px\": 40", "\"width_px\": 0", "width_px"},
-        Slip{"\"width_px\": 40", "\"width_px\": 4.5", "whole number"},
-        Slip{"\"count\": 2", "\"count\": 0", "count"},
+        Slip{"\"width_px\": 80", "\"width_px\": 0", "width_px"},
+        Slip{"\"width_px\": 80", "\"width_px\": 4.5", "whole number"},
+        Slip{"\"count\": 8", "\"count\": 0", "count"},
         Slip{"\"depth\": 4", "\"depth\": 40", "depth"},
         Slip{"\"method\": \"ssd\"", "\"method\": \"sdd\"", "did you mean 'ssd'"},
         Slip{"\"libscan\": 1", "\"libscan\": 2", "version 1"},
