@@ -22,6 +22,7 @@ const std::map<std::string, double> mesh_units = {{"m", 1}, {"mm", 1e-3}, {"um",
 template <class Map>
 std::vector<std::string> keys_of(const Map& map) {
   std::vector<std::string> keys;
+  keys.reserve(map.size());
   for (const auto& [key, value] : map) keys.push_back(key);
   return keys;
 }

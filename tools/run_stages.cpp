@@ -80,7 +80,7 @@ Verdict verify_run(const std::filesystem::path& run, Console&) {
   const Recipe recipe = read_recipe(recipe_path(run));
   const Truth truth = read_truth(truth_path(run));
   const RunResult result = read_result(run);
-  const Verdict verdict = judge(measure_run(result, truth, recipe.verify), recipe.limits);
+  Verdict verdict = judge(measure_run(result, truth, recipe.verify), recipe.limits);
   write_json(run / "verdict.json", verdict_json(verdict));
   return verdict;
 }

@@ -7,7 +7,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 preset=${PRESET:-release}
-tools/setup.sh
+case $preset in
+  asan-ubsan) tools/setup.sh clang libclang-rt-14-dev ;;
+  *) tools/setup.sh ;;
+esac
 cmake --preset "$preset" >"/tmp/libscan-configure.$$" 2>&1 || {
   cat "/tmp/libscan-configure.$$" >&2
   exit 1

@@ -52,6 +52,7 @@ class GridNeighbours {
     found.assign(1, centre);
     if (window.empty()) return;
     std::vector<double> ordered;
+    ordered.reserve(window.size());
     for (const Near& near : window) ordered.push_back(near.distance_per_step);
     const auto quartile = ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 4);
     std::nth_element(ordered.begin(), quartile, ordered.end());
@@ -85,7 +86,7 @@ Eigen::Vector3d plane_normal(const PointCloud& cloud, std::span<const std::uint3
   mean /= total;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments / total -
                                                               mean * mean.transpose());
-  const Eigen::Vector3d spread = solver.eigenvalues();  // ascending
+  const Eigen::Vector3d& spread = solver.eigenvalues();  // ascending
   const double rounding = std::numeric_limits<double>::epsilon() * origin.cwiseAbs().maxCoeff();
   const double least =
       16 * std::max(rounding * rounding, std::numeric_limits<double>::epsilon() * spread(2));

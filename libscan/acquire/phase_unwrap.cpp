@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -65,11 +66,14 @@ UnwrappedDistance unwrap(std::span<const FoldedDistance> folded, double range_m,
   const double joint_m = joint_sigma_m(folded);
   const double margin_m = gate_sigmas * joint_m;
   Candidate best, second;
-  const double first = std::ceil((-margin_m - reference.distance_m) / reference.period_m) - 1;
-  const double last =
-      std::floor((range_m + margin_m - reference.distance_m) / reference.period_m) + 1;
-  for (double wraps = first; wraps <= last; ++wraps) {
-    const Candidate one = rate(folded, reference.distance_m + wraps * reference.period_m, joint_m);
+  const auto wraps_to = [&](double distance_m) {
+    return std::llround((distance_m - reference.distance_m) / reference.period_m);
+  };
+  const std::int64_t last = wraps_to(range_m + margin_m) + 1;
+  for (std::int64_t wraps = wraps_to(-margin_m) - 1; wraps <= last; ++wraps) {
+    const double distance_m =
+        reference.distance_m + static_cast<double>(wraps) * reference.period_m;
+    const Candidate one = rate(folded, distance_m, joint_m);
     if (one.distance_m < -margin_m || one.distance_m > range_m + margin_m) continue;
     if (one.chi_square < best.chi_square)
       second = std::exchange(best, one);

@@ -171,9 +171,10 @@ Scan points_from(const DisparityMap& map, const StereoCalibration& calibration) 
       return;
     }
     const double depth_m = calibration.focal_px * calibration.baseline_m / parallax;
+    const std::size_t row = i / disparity.width, column = i % disparity.width;
     const Eigen::Vector3d ray(
-        (static_cast<double>(i % disparity.width) - calibration.cx_px) / calibration.focal_px,
-        (static_cast<double>(i / disparity.width) - calibration.cy_px) / calibration.focal_px, 1);
+        (static_cast<double>(column) - calibration.cx_px) / calibration.focal_px,
+        (static_cast<double>(row) - calibration.cy_px) / calibration.focal_px, 1);
     // dZ/dd = -Z / (d + doffs); the point moves along its ray, all of it by the same share.
     const double range_m = depth_m * ray.norm();
     outcomes[i] =

@@ -12,7 +12,8 @@ namespace {
 std::uint64_t poisson_by_product(RandomStream& random, double mean) {
   const double limit = std::exp(-mean);
   std::uint64_t count = 0;
-  for (double product = random.uniform(); product > limit; product *= random.uniform()) ++count;
+  double product = 1;
+  while ((product *= random.uniform()) > limit) ++count;
   return count;
 }
 
@@ -24,7 +25,7 @@ double stirling_error(double k) {
     return (1.0 / 12 - (1.0 / 360 - (1.0 / 1260 - 1.0 / 1680 / k2) / k2) / k2) / k;
   }
   double log_factorial = 0;
-  for (double i = 2; i <= k; ++i) log_factorial += std::log(i);
+  for (int i = 2; i <= static_cast<int>(k); ++i) log_factorial += std::log(i);
   return log_factorial - 0.5 * std::log(2 * std::numbers::pi * k) - k * (std::log(k) - 1);
 }
 

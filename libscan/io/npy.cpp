@@ -149,7 +149,7 @@ NumberArray decode_npy(std::string_view bytes, const std::string& name) {
   };
   if (bytes.substr(0, magic.size()) != magic || bytes.size() < 12)
     fail("is not a NumPy array file");
-  const int version = bytes[6];
+  const int version = static_cast<unsigned char>(bytes[6]);
   if (version < 1 || version > 3) fail("npy version " + std::to_string(version) + " is unknown");
   const std::size_t length = version == 1
                                  ? load<std::uint16_t>(bytes.data() + 8, std::endian::little)

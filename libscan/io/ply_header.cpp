@@ -182,9 +182,6 @@ void check_names(const Ply& ply) {
 std::size_t ply_type_size(std::size_t type) {
   return sizes[type];
 }
-std::string_view ply_type_name(std::size_t type) {
-  return names[type];
-}
 
 PlyHeader parse_ply_header(std::string_view content, const std::string& name) {
   return HeaderParser(content, name).parse();

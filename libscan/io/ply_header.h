@@ -15,7 +15,6 @@ namespace scan {
 // The eight scalar types, in the order of PlyProperty::Values.
 inline constexpr std::size_t ply_type_count = 8;
 std::size_t ply_type_size(std::size_t type);
-std::string_view ply_type_name(std::size_t type);
 
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;

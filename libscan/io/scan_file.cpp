@@ -72,6 +72,7 @@ void drop_points_not_finite(Scan& scan) {
   scan.cloud = subset(scan.cloud, kept);
   if (!scan.ray.empty()) {
     std::vector<std::uint32_t> rays;
+    rays.reserve(kept.size());
     for (const std::uint32_t i : kept) rays.push_back(scan.ray[i]);
     scan.ray = std::move(rays);
   }

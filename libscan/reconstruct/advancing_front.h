@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// CGAL's advancing front (GPL), alone in the target libscan::cgal.
+// CGAL's advancing front (GPL): part of the target libscan::cgal.
 #pragma once
 
 #include <span>

@@ -29,7 +29,8 @@ double integral(const CellMatrix& cell_matrix, int i, int j, int cells) {
 
 std::vector<StencilRow> stencil_rows(int cells, int padded_to) {
   const int functions = cells + 2;
-  std::vector<StencilRow> rows((functions + padded_to - 1) / padded_to * padded_to);
+  const int padded = (functions + padded_to - 1) / padded_to * padded_to;
+  std::vector<StencilRow> rows(padded);
   for (int i = 0; i < functions; ++i)
     for (int tap = 0; tap < 5; ++tap) {
       const int j = i + tap - 2;

@@ -55,13 +55,13 @@ int edge_start_corner(int edge) {
 }
 
 CellPolygons cell_polygons(const std::array<double, 8>& values) {
-  std::array<signed char, 12> next;
+  std::array<int, 12> next;
   next.fill(-1);
   for (const auto& corners : face_corners) {
     const FaceCrossings at = crossings_of(corners, values);
     const bool swap = at.count == 2 && inside_is_joined(corners, values);
     for (int i = 0; i < at.count; ++i)
-      next[at.enter[i]] = static_cast<signed char>(at.leave[swap ? 1 - i : i]);
+      next[at.enter[i]] = at.leave[swap ? 1 - i : i];
   }
   CellPolygons polygons;
   int used = 0;

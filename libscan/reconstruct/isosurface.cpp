@@ -145,7 +145,8 @@ double edge_parameter(const CrossedCell& c, int axis) {
   const int u = strides[(axis + 1) % 3], v = strides[(axis + 2) % 3];
   std::array<double, 3> q;
   for (int i = 0; i < 3; ++i) {
-    const double* at = c.cell.coefficients.data() + i * strides[axis];
+    const int first = i * strides[axis];
+    const double* at = c.cell.coefficients.data() + first;
     q[i] = (at[0] + at[u] + at[v] + at[u + v]) / 4;
   }
   const double t = parabola_root(q);
@@ -228,6 +229,7 @@ class Polygonizer {
     int at = 0;
     for (int k = 0; k < c.polygons.loops; ++k) {
       std::vector<std::uint32_t> loop;
+      loop.reserve(c.polygons.sizes[k]);
       for (int i = 0; i < c.polygons.sizes[k]; ++i)
         loop.push_back(vertex_of(c, c.polygons.edges[at++]));
       if (needs_centre(c.polygons.sizes[k])) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "libscan/core/parallel.h"
 
@@ -31,7 +32,8 @@ ValueAndSlope evaluate(const double* cube, const CellWeights& w) {
   ValueAndSlope f;
   for (int c = 0; c < 3; ++c)
     for (int b = 0; b < 3; ++b) {
-      const double* q = cube + cube_width * (b + cube_width * c);
+      const int first = cube_width * (b + cube_width * c);
+      const double* q = cube + first;
       const double value = w.x.value[0] * q[0] + w.x.value[1] * q[1] + w.x.value[2] * q[2];
       const double slope = w.x.slope[0] * q[0] + w.x.slope[1] * q[1] + w.x.slope[2] * q[2];
       f.value += w.y.value[b] * w.z.value[c] * value;
@@ -46,7 +48,8 @@ ValueAndSlope evaluate(const double* cube, const CellWeights& w) {
 void accumulate(double* cube, const CellWeights& w, const ValueAndSlope& f) {
   for (int c = 0; c < 3; ++c)
     for (int b = 0; b < 3; ++b) {
-      double* q = cube + cube_width * (b + cube_width * c);
+      const int first = cube_width * (b + cube_width * c);
+      double* q = cube + first;
       const double by_value = f.value * w.y.value[b] * w.z.value[c] +
                               f.slope[1] * w.y.slope[b] * w.z.value[c] +
                               f.slope[2] * w.y.value[b] * w.z.slope[c];
@@ -94,7 +97,9 @@ SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
     : value_weight_(value_weight), gradient_weight_(gradient_weight), cells_(level.cells()) {
   struct Address {
     std::uint32_t block, cell, sample;
-    auto operator<=>(const Address&) const = default;
+    bool operator<(const Address& other) const {
+      return std::tie(block, cell, sample) < std::tie(other.block, other.cell, other.sample);
+    }
   };
   std::vector<Address> addresses(chosen.size());
   const auto cell_along = [&](const Eigen::Vector3d& u, int a) {

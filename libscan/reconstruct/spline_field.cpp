@@ -67,10 +67,11 @@ FieldCell child_cell(const SplineField& field, const FieldCell& cell, int octant
     child.place[a] = 2 * cell.place[a] + half[a];
     for (int line = 0; line < 9; ++line) {
       const int first = a == 0 ? 3 * line : a == 1 ? line % 3 + 9 * (line / 3) : line;
-      double* q = child.coefficients.data() + first;
+      auto& q = child.coefficients;
+      const int second = first + strides[a], third = second + strides[a];
       double out[3];
-      refine_three(q[0], q[strides[a]], q[2 * strides[a]], half[a], out);
-      for (int i = 0; i < 3; ++i) q[i * strides[a]] = out[i];
+      refine_three(q[first], q[second], q[third], half[a], out);
+      q[first] = out[0], q[second] = out[1], q[third] = out[2];
     }
   }
   add_own_coefficients(field, child);

@@ -11,7 +11,8 @@ namespace {
 
 constexpr int halo = 2;                       // reach of the stencil, functions
 constexpr int wide = block_width + 2 * halo;  // side of what a block's stencil reads
-constexpr int lanes_z = block_width * wide * wide;
+constexpr int plane = wide * wide;
+constexpr int lanes_z = block_width * plane;
 constexpr int lanes_y = block_width * block_width * wide;
 
 // The finer functions 2i and 2i+1 from the coarse ones i and i+1.
@@ -22,7 +23,8 @@ void refine_cube(const double* coarse, double* fine) {
   double x[3 * 3 * 4], y[3 * 4 * 4];
   for (int line = 0; line < 9; ++line)
     for (int i = 0; i < 4; ++i) {
-      const double* c = coarse + 3 * line + i / 2;
+      const int first = 3 * line + i / 2;
+      const double* c = coarse + first;
       x[4 * line + i] = i % 2 == 0 ? near_weight * c[0] + far_weight * c[1]
                                    : far_weight * c[0] + near_weight * c[1];
     }
@@ -67,7 +69,8 @@ void coarsen_cube(const double* fine, double* coarse) {
 bool gather_table(const std::array<std::int32_t, 27>& table, const std::vector<double>& values,
                   int low, int width, double* cube) {
   bool any = false;
-  std::fill(cube, cube + width * width * width, 0.0);
+  const int size = width * width * width;
+  std::fill(cube, cube + size, 0.0);
   for (int dz = -1; dz <= 1; ++dz)
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
@@ -88,16 +91,18 @@ bool gather_table(const std::array<std::int32_t, 27>& table, const std::vector<d
 // Along z: mass, stiffness and bending sums of the 8 x 8 columns.
 void sum_along_z(const double* cube, const StencilRow* rows, double (&out)[3][lanes_z]) {
   for (int z = 0; z < block_width; ++z) {
-    double* m = out[0] + z * wide * wide;
-    double* k = out[1] + z * wide * wide;
-    double* b = out[2] + z * wide * wide;
-    std::fill(m, m + wide * wide, 0.0);
-    std::fill(k, k + wide * wide, 0.0);
-    std::fill(b, b + wide * wide, 0.0);
+    const int lane = z * plane;
+    double* m = out[0] + lane;
+    double* k = out[1] + lane;
+    double* b = out[2] + lane;
+    std::fill(m, m + plane, 0.0);
+    std::fill(k, k + plane, 0.0);
+    std::fill(b, b + plane, 0.0);
     for (int tap = 0; tap < 5; ++tap) {
       const double wm = rows[z].mass[tap], wk = rows[z].stiffness[tap], wb = rows[z].bending[tap];
-      const double* from = cube + (z + tap) * wide * wide;
-      for (int i = 0; i < wide * wide; ++i) {
+      const int lane_read = (z + tap) * plane;
+      const double* from = cube + lane_read;
+      for (int i = 0; i < plane; ++i) {
         m[i] += wm * from[i];
         k[i] += wk * from[i];
         b[i] += wb * from[i];
@@ -111,9 +116,10 @@ void sum_along_y(const double (&in)[3][lanes_z], const StencilRow* rows,
                  double (&out)[3][lanes_y]) {
   for (int z = 0; z < block_width; ++z)
     for (int y = 0; y < block_width; ++y) {
-      double* to_mass = out[0] + (z * block_width + y) * wide;
-      double* to_stiffness = out[1] + (z * block_width + y) * wide;
-      double* to_bending = out[2] + (z * block_width + y) * wide;
+      const int lane = (z * block_width + y) * wide;
+      double* to_mass = out[0] + lane;
+      double* to_stiffness = out[1] + lane;
+      double* to_bending = out[2] + lane;
       std::fill(to_mass, to_mass + wide, 0.0);
       std::fill(to_stiffness, to_stiffness + wide, 0.0);
       std::fill(to_bending, to_bending + wide, 0.0);
@@ -187,8 +193,9 @@ void BendingStencil::add(const BlockLevel& level, const std::vector<double>& val
   double cube[wide * wide * wide], by_z[3][lanes_z], by_y[3][lanes_y];
   if (!gather_table(level.neighbours[block], values, halo, wide, cube)) return;
   const BlockPlace& p = level.blocks[block];
-  sum_along_z(cube, &rows_[p[2] * block_width], by_z);
-  sum_along_y(by_z, &rows_[p[1] * block_width], by_y);
+  const int row_z = p[2] * block_width, row_y = p[1] * block_width;
+  sum_along_z(cube, &rows_[row_z], by_z);
+  sum_along_y(by_z, &rows_[row_y], by_y);
   // With cells of width h, |D^2 f|^2 dV scales by h^-4 h^3.
   const double scale = factor * inverse_cell_;
   for (int line = 0; line < block_width * block_width; ++line)

@@ -115,7 +115,9 @@ Eigen::MatrixXd SsdSystem::coarsest_matrix() const {
         unit[column] = 1;
         double* sum = matrix.data() + column * size;  // columns are contiguous
         for (const std::int32_t b : level.neighbours[column / block_size])
-          if (b >= 0) bending_[0].add(level, unit, b, weights_.smoothness, sum + b * block_size);
+          if (b >= 0)
+            bending_[0].add(level, unit, b, weights_.smoothness,
+                            sum + std::ptrdiff_t{b} * block_size);
         if (!(sum[column] > 0)) sum[column] = 1;
       },
       16);

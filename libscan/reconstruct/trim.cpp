@@ -15,6 +15,7 @@ void keep_only(SurfaceResult& result, const std::vector<char>& keep) {
   std::vector<std::uint32_t> vertex_of;
   result.surface = kept_triangles(result.surface, keep, vertex_of);
   std::vector<double> support;
+  support.reserve(vertex_of.size());
   for (const std::uint32_t v : vertex_of) support.push_back(result.support_m[v]);
   result.support_m = std::move(support);
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// The one entry into the part of verify that is built on CGAL's GPL code.
+// Self-intersections counted by CGAL (GPL): part of the target libscan::cgal.
 #pragma once
 
 #include <optional>

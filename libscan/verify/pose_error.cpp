@@ -31,7 +31,7 @@ void check_input(std::span<const Pose> estimated, std::span<const Pose> truth, P
 }
 
 Eigen::Vector3d centroid(const std::vector<Eigen::Vector3d>& points) {
-  const Eigen::Vector3d origin = points.front();  // keeps digits far from the frame's origin
+  const Eigen::Vector3d& origin = points.front();  // keeps digits far from the frame's origin
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const auto& point : points) sum += point - origin;
   return origin + sum / static_cast<double>(points.size());

@@ -71,7 +71,9 @@ TEST_P(HardScene, ACorridorKeepsThePlaceAlongIt) {
   EXPECT_NE(result.stop, Stop::converged);
   ASSERT_EQ(result.weak_directions.size(), 1u);
   EXPECT_EQ(result.weak_directions[0].substr(0, 14), "slide along (1") << result.weak_directions[0];
-  EXPECT_LT(std::abs(result.target_from_source.translation().x() - 0.5), 1e-3);
+  // A hundredth of the peers' least drift. The 7 cm sideways are removed across the free direction,
+  // which leans from the axis as the guess does: 0.6 mm of slide for each half degree, plus noise.
+  EXPECT_LT(std::abs(result.target_from_source.translation().x() - 0.5), 2.4e-3);
   if (GetParam() == IcpMethod::point_to_plane) {
     EXPECT_EQ(result.stop, Stop::degenerate);
     // 1 cm / sqrt(10,000 points per pair of walls) = 0.1 mm, ten times that allowed for the edges,

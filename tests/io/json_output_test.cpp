@@ -118,7 +118,7 @@ TEST(JsonOutput, NumbersReadBackToTheBitAndNamesNeedNotBeUtf8) {
     EXPECT_EQ(json::parse(json_text(ordered_json(number))).get<double>(), number);
   }
   EXPECT_EQ(json_text(ordered_json(0.1)), "0.1\n");
-  EXPECT_NO_THROW(json::parse(json_text(ordered_json("bad \xff name"))));
+  EXPECT_TRUE(json::accept(json_text(ordered_json("bad \xff name"))));
 }
 
 }  // namespace

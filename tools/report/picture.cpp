@@ -75,8 +75,9 @@ View paint(const Painter& painter, const Side& side, const Bounds& box, double p
     for (int column = 0; column < size_px; ++column) {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (int k = 0; k < rays_per_side * rays_per_side; ++k) {
-        const double u = column + (k % rays_per_side + 0.5) * sub - size_px / 2.0;
-        const double v = static_cast<double>(row) + (k / rays_per_side + 0.5) * sub - size_px / 2.0;
+        const int across = k % rays_per_side, down = k / rays_per_side;
+        const double u = column + (across + 0.5) * sub - size_px / 2.0;
+        const double v = static_cast<double>(row) + (down + 0.5) * sub - size_px / 2.0;
         const Eigen::Vector3d origin = box.center() + distance * side.towards_viewer +
                                        pixel_m * (u * side.right - v * side.up);
         sum += painter.shade(origin, -side.towards_viewer);
