@@ -123,7 +123,9 @@ TEST(BadInput, ScansWithoutOverlapAreNotCalledAligned) {
   const Outcome outcome = run_scan(
       {"align", a, b, (folder / "aligned").string(), "--max-distance", "1cm", "--json"});
   expect_failure(outcome, computation, "aligned");
-  EXPECT_NE(outcome.out.find("no correspondences"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("\"status\": \"error\""), std::string::npos) << outcome.out;
+  const std::string alignment = slurp(folder / "aligned/alignment.json");
+  EXPECT_NE(alignment.find("no correspondences"), std::string::npos) << alignment;
 }
 
 TEST(BadInput, OutputThatCannotBeWrittenIsFoundBeforeTheWork) {
