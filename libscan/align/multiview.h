@@ -29,6 +29,7 @@ struct ScanPose {
   int iterations = 0;
   double rms_m = 0;
   double inlier_fraction_of_source = 0;
+  double agreement = 0;  // share of its points near other scans that lie on them within noise
   std::vector<std::string> weak_directions;
 };
 

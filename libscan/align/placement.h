@@ -10,6 +10,9 @@
 
 namespace scan {
 
+// How near to another scan a point of this one counts as seen by both: as far as a guess may be off.
+double overlap_reach_m(const PointCloud& cloud);
+
 // Share of the points of `a` that have a point of `b` within `distance_m` whose normal is less than
 // 60 degrees off, from up to 512 of them. Zero if either is empty.
 double predicted_overlap(const PointCloud& a, const Pose& world_from_a, const PointCloud& b,

@@ -36,6 +36,7 @@ ordered_json scan_pose_json(const std::string& file, const ScanPose& scan) {
           {"iterations", scan.iterations},
           {"rms_m", number(scan.rms_m)},
           {"inlier_fraction_of_source", number(scan.inlier_fraction_of_source)},
+                     {"agreement", number(scan.agreement)},
           {"weak_directions", scan.weak_directions}};
 }
 

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Whether scans lie on each other where they meet, measured by what each scan's own noise allows.
+//
+// An alignment that ended in a wrong minimum still has a small step and, among the pairs that its
+// gates keep, small residuals. It shows in the points that should have partners and miss them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "libscan/core/point_cloud.h"
+#include "libscan/search/kd_tree.h"
+
+namespace scan {
+
+// With less agreement a scan is not aligned. Right poses of scans whose noise is as `sigma_m` or the
+// scan itself says reach 0.9; unmodelled errors of the device may take some of it.
+inline constexpr double least_agreement = 0.5;
+
+// Residuals up to this many metres are the scan's own doing: three times sigma_m, or three sigma of
+// what its points differ from the plane of their nearest neighbour (noise, curvature and sampling
+// together), but not less than a quarter of its spacing.
+double tolerated_residual_m(const PointCloud& cloud, const KdTree& search);
+
+// A scan at a pose; all three outlive it.
+struct PosedScan {
+  const PointCloud* cloud = nullptr;
+  const KdTree* search = nullptr;
+  Pose world_from_scan = Pose::Identity();
+  double tolerance_m = 0;
+};
+
+struct Agreement {
+  double expected = 0;  // share of the scan's points near another scan
+  double agreeing = 0;  // share of them within tolerance of the nearest one's plane; 0 for none
+};
+
+// `reach_m`: points so near to another scan, and with a normal less than 60 degrees off, count as
+// seen by both. From up to 1024 points.
+Agreement agreement(const PosedScan& scan, std::span<const PosedScan> others, double reach_m);
+
+}  // namespace scan
