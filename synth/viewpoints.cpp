@@ -67,6 +67,7 @@ std::vector<Pose> poses_of(const Ring& ring) {
   const bool closed = std::abs(ring.sweep_rad) > full_turn_rad * (1 - 1e-9);
   const int intervals = closed ? ring.count : std::max(1, ring.count - 1);
   std::vector<Pose> poses;
+  poses.reserve(ring.count);
   for (int i = 0; i < ring.count; ++i)
     poses.push_back(on_circle(ring.centre_m, ring.radius_m, ring.height_m,
                               ring.start_rad + ring.sweep_rad * i / intervals));

@@ -80,6 +80,7 @@ int align_files(const Arguments& arguments, Console& console) {
   const auto scans = read_scans_with_normals(inputs, console);
   const auto first = guesses(arguments, inputs, scans);
   std::vector<PointCloud> clouds;
+  clouds.reserve(scans.size());
   for (const Scan& scan : scans) clouds.push_back(scan.cloud);
 
   const MultiviewOptions options = options_from(arguments);

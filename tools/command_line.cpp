@@ -94,6 +94,7 @@ int report_error(const Console& console, const std::string& command, const Error
 std::string unknown_word_hint(const CLI::App& app, int argc, char** argv,
                               const std::vector<Command>& commands) {
   std::vector<std::string> words;
+  words.reserve(commands.size());
   for (const Command& command : commands) words.push_back(command.name);
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
     const std::string near = nearest_word(argv[1], words);

@@ -13,20 +13,18 @@ find build/coverage -name '*.gcda' -delete 2>/dev/null || true  # counts add up 
 PRESET=coverage tools/test.sh "$@"
 
 mkdir -p build/coverage/coverage
-gcovr -j "$(nproc)" --filter libscan/ --filter synth/ --filter tools/ \
+gcovr --filter libscan/ --filter synth/ --filter tools/ \
   --csv build/coverage/coverage.csv --html-details build/coverage/coverage/index.html build/coverage
 
 # Columns of the file: name, lines, covered lines, ...
 awk -F, '
-  function row(name, lines, covered) {
-    printf "%-22s %6d of %6d lines  %5.1f %%\n", name, covered, lines, 100 * covered / lines
-  }
   NR > 1 && $2 > 0 {
     folder = $1; sub("/[^/]*$", "", folder)
-    lines[folder] += $2; covered[folder] += $3; all += $2; all_covered += $3
+    lines[folder] += $2; covered[folder] += $3
+    lines["total"] += $2; covered["total"] += $3
   }
   END {
-    for (folder in lines) row(folder, lines[folder], covered[folder]) | "sort"
-    close("sort")
-    row("all", all, all_covered)
-  }' build/coverage/coverage.csv
+    for (name in lines)
+      printf "%-22s %6d of %6d lines  %5.1f %%\n", name, covered[name], lines[name],
+             100 * covered[name] / lines[name]
+  }' build/coverage/coverage.csv | LC_ALL=C sort
