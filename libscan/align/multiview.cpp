@@ -24,6 +24,7 @@ constexpr std::size_t least_points = 6;
 constexpr double thin_in_spacings = 2;
 // Partners may be this many spacings of the thinned scans, or residuals after placing, apart.
 constexpr double gate_in_spacings = 3;
+constexpr double most_sigma_in_medians = 2;
 
 void check_input(std::span<const PointCloud> clouds, std::span<const Pose> guesses,
                  const MultiviewOptions& options) {
@@ -49,6 +50,17 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+// Without the points whose sigma is more than twice the scan's median: readings at grazing incidence,
+// which slide along the surface rather than off it and bend the normals around them.
+PointCloud without_weak_points(PointCloud cloud) {
+  if (cloud.sigma_m.empty()) return cloud;
+  const double limit_m = most_sigma_in_medians * median(cloud.sigma_m);
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i)
+    if (cloud.sigma_m[i] <= limit_m) kept.push_back(i);
+  return subset(cloud, kept);
 }
 
 // Alignment of all scans, in a frame that is the world moved to `origin_`.
@@ -115,7 +127,8 @@ double Alignment::thinning_side_m(const std::vector<PointCloud>& finite) const {
 
 void Alignment::prepare() {
   std::vector<PointCloud> finite;
-  for (const PointCloud& cloud : clouds_) finite.push_back(subset(cloud, finite_points(cloud)));
+  for (const PointCloud& cloud : clouds_)
+    finite.push_back(without_weak_points(subset(cloud, finite_points(cloud))));
   const double side_m = thinning_side_m(finite);
   scans_.resize(finite.size());
   parallel_for(
