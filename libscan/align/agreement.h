@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// Whether scans lie on each other where they meet, measured by what each scan's own noise allows.
+// How well scans lie on each other where they meet, measured by what each scan's own noise allows.
 //
 // An alignment that ended in a wrong minimum still has a small step and, among the pairs that its
-// gates keep, small residuals. It shows in the points that should have partners and miss them.
+// gates keep, small residuals. It shows in the points that should have partners and miss them. Right
+// poses of one object's scans reach 0.9; of outdoor scans, whose views share little of what they see
+// within the reach, 0.2: the figure ranks poses of one pair, no threshold tells right from wrong.
 #pragma once
 
 #include <span>
@@ -13,10 +15,6 @@
 #include "libscan/search/kd_tree.h"
 
 namespace scan {
-
-// With less agreement a scan is not aligned. Right poses of scans whose noise is as `sigma_m` or the
-// scan itself says reach 0.9; unmodelled errors of the device may take some of it.
-inline constexpr double least_agreement = 0.5;
 
 // Residuals up to this many metres are the scan's own doing: three times sigma_m, or three sigma of
 // what its points differ from the plane of their nearest neighbour (noise, curvature and sampling

@@ -26,7 +26,6 @@ enum class Stop {
   too_few_points,      // a cloud has fewer than 6 valid points; the pose is the guess
   no_correspondences,  // fewer than 6 pairs within the gates; the pose is the guess
   degenerate,          // converged in the directions that the data fix; others kept from the guess
-  poor_fit,            // of many scans: came to rest where it does not lie on the others
 };
 std::string_view name_of(Stop stop);  // "converged", "iteration limit", "too few points", ...
 

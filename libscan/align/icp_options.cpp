@@ -28,8 +28,6 @@ std::string_view name_of(Stop stop) {
       return "no correspondences";
     case Stop::degenerate:
       return "degenerate";
-    case Stop::poor_fit:
-      return "poor fit";
   }
   return "";
 }

@@ -82,7 +82,7 @@ class Alignment {
   bool move_scans(const std::vector<Vector6>& twists, const DataFrame& frame);
   void judge(const JointPairs& pairs, const DataFrame& frame);
   void judge_scan(std::size_t i, const JointPairs& pairs, const DataFrame& frame);
-  void judge_agreement();
+  void measure_agreement();
   Stop overall() const;
 
   std::span<const PointCloud> clouds_;
@@ -260,8 +260,8 @@ void Alignment::judge_scan(std::size_t i, const JointPairs& pairs, const DataFra
   scan.stop = !still_[i] ? Stop::iteration_limit : open > 0 ? Stop::degenerate : Stop::converged;
 }
 
-// A scan that came to rest where it misses the others is not aligned, whatever its pairs say.
-void Alignment::judge_agreement() {
+// How well each scan lies on all others, at the final poses.
+void Alignment::measure_agreement() {
   std::vector<PosedScan> posed(scans_.size());
   parallel_for(
       scans_.size(),
@@ -276,11 +276,8 @@ void Alignment::judge_agreement() {
     std::vector<PosedScan> others;
     for (std::size_t j = 0; j < scans_.size(); ++j)
       if (placed_[j] && j != i) others.push_back(posed[j]);
-    ScanPose& scan = result_.scans[i];
-    const Agreement found = agreement(posed[i], others, overlap_reach_m(*posed[i].cloud));
-    scan.agreement = found.agreeing;
-    if (i != anchor_ && found.expected > 0 && found.agreeing < least_agreement)
-      scan.stop = Stop::poor_fit;
+    result_.scans[i].agreement =
+        agreement(posed[i], others, overlap_reach_m(*posed[i].cloud)).agreeing;
   }
 }
 
@@ -292,14 +289,13 @@ void Alignment::judge(const JointPairs& pairs, const DataFrame& frame) {
       pairs.forms.empty() && scans_.size() > 1 ? Stop::no_correspondences : Stop::converged;
   anchor.rms_m = pairs.rms_m[anchor_];
   anchor.inlier_fraction_of_source = pairs.paired_fraction[anchor_];
-  judge_agreement();
+  measure_agreement();
 }
 
 // Converged if all scans are; else the gravest of their reasons.
 Stop Alignment::overall() const {
   for (const Stop stop :
-       {Stop::too_few_points, Stop::no_correspondences, Stop::poor_fit, Stop::degenerate,
-        Stop::iteration_limit})
+       {Stop::too_few_points, Stop::no_correspondences, Stop::degenerate, Stop::iteration_limit})
     for (const ScanPose& scan : result_.scans)
       if (scan.stop == stop) return stop;
   return Stop::converged;

@@ -152,9 +152,10 @@ bool Placement::add(std::size_t scan) {
   pose.stop = result.stop;
   pose.agreement = best.agreement.agreeing;
   if (result.stop == Stop::no_correspondences || result.stop == Stop::too_few_points) return false;
-  if (result.inlier_fraction_of_source < options_.min_overlap) pose.stop = Stop::no_correspondences;
-  else if (pose.agreement < least_agreement) pose.stop = Stop::poor_fit;
-  if (pose.stop == Stop::no_correspondences || pose.stop == Stop::poor_fit) return false;
+  if (result.inlier_fraction_of_source < options_.min_overlap) {
+    pose.stop = Stop::no_correspondences;
+    return false;
+  }
   pose.world_from_scan = result.target_from_source;
   pose.rms_m = result.rms_m;
   pose.inlier_fraction_of_source = result.inlier_fraction_of_source;

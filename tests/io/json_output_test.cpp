@@ -55,7 +55,7 @@ TEST(JsonOutput, AlignmentIsWhatReadPosesReads) {
   const ordered_json alignment = alignment_json(files, result, {});
   EXPECT_EQ(keys_of(alignment["scans"][0]),
             (std::vector<std::string>{"file", "world_from_scan", "stop", "iterations", "rms_m",
-                                      "inlier_fraction_of_source", "weak_directions"}));
+                                      "inlier_fraction_of_source", "agreement", "weak_directions"}));
   EXPECT_EQ(alignment["scans"][1]["stop"], "converged");
   EXPECT_EQ(alignment["method"], "point-to-plane");
   EXPECT_EQ(alignment["search"], "kd-tree");
