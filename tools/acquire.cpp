@@ -51,8 +51,8 @@ int acquire_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
   check_output(output);
   const Stopwatch watch;
-  const RawFrames frames = read_raw_frames(
-      arguments.device, {inputs.begin(), inputs.end()}, arguments.calibration);
+  const RawFrames frames =
+      read_raw_frames(arguments.device, {inputs.begin(), inputs.end()}, arguments.calibration);
   Scan scan = decode(arguments, frames);
   console.time("acquire", watch.seconds());
   if (scan.cloud.empty())

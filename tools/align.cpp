@@ -24,7 +24,9 @@ struct Arguments {
   double thin_m = 0;
 };
 
-std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+std::string stem(const std::string& path) {
+  return std::filesystem::path(path).stem().string();
+}
 
 // The first guess of each scan: by name from the file of poses, else by order, else the scan's own.
 std::vector<Pose> guesses(const Arguments& arguments, const std::vector<std::string>& inputs,
@@ -117,7 +119,8 @@ Action align_command(CommandLine& line) {
               "poses to start from (TUM, KITTI, 4x4, Stanford .conf, alignment.json)");
   line.length("--max-distance", arguments->max_distance_m,
               "pairs farther apart do not count; found from the data if not given");
-  line.length("--thin", arguments->thin_m, "side of the cubes that thin the clouds for the joint step");
+  line.length("--thin", arguments->thin_m,
+              "side of the cubes that thin the clouds for the joint step");
   return [arguments](Console& console) { return align_files(*arguments, console); };
 }
 

@@ -148,8 +148,8 @@ int run_action(const Declared& declared, Console& console) {
 }  // namespace
 
 double parse_length_m(const std::string& text, const std::string& option) {
-  static const std::map<std::string, double> units = {
-      {"", 1}, {"m", 1}, {"mm", 1e-3}, {"um", 1e-6}, {"cm", 1e-2}, {"km", 1e3}};
+  static const std::map<std::string, double> units = {{"", 1},      {"m", 1},     {"mm", 1e-3},
+                                                      {"um", 1e-6}, {"cm", 1e-2}, {"km", 1e3}};
   std::size_t end = 0;
   double value = 0;
   try {
@@ -159,8 +159,8 @@ double parse_length_m(const std::string& text, const std::string& option) {
   }
   const auto unit = units.find(text.substr(end));
   if (end == 0 || unit == units.end() || !std::isfinite(value) || value < 0)
-    throw Error(Trouble::usage, option + ": '" + text +
-                                    "' is not a length, such as 2mm, 0.1m or 50um");
+    throw Error(Trouble::usage,
+                option + ": '" + text + "' is not a length, such as 2mm, 0.1m or 50um");
   return value * unit->second;
 }
 
@@ -181,9 +181,10 @@ int run_program(int argc, char** argv, const std::vector<Command>& commands) {
     add_shared_options(*sub, console);
     declared.push_back({&command, sub, line, std::move(action)});
   }
-  app.footer("Run 'scan COMMAND --help' for a command's arguments and an example.\n"
-             "Exit codes: 0 ok; 1 verification failed; 2 usage; 3 input; 4 computation;\n"
-             "5 output; 6 resource limit; 130 interrupted.");
+  app.footer(
+      "Run 'scan COMMAND --help' for a command's arguments and an example.\n"
+      "Exit codes: 0 ok; 1 verification failed; 2 usage; 3 input; 4 computation;\n"
+      "5 output; 6 resource limit; 130 interrupted.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

@@ -43,8 +43,8 @@ struct Command {
   Action (*declare)(CommandLine&);
 };
 
-// Reads the arguments, runs the command that they name and returns the exit code. Every error ends in
-// one line `error: ...` on stderr, and with --json in one object on stdout.
+// Reads the arguments, runs the command that they name and returns the exit code. Every error ends
+// in one line `error: ...` on stderr, and with --json in one object on stdout.
 int run_program(int argc, char** argv, const std::vector<Command>& commands);
 
 // "2mm", "0.1m", "50um", "0.3" (metres). Throws scan::Error (usage) naming the option.

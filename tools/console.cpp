@@ -33,7 +33,9 @@ std::string three_digits(double value, const char* unit) {
 
 }  // namespace
 
-void watch_for_interrupt() { std::signal(SIGINT, on_interrupt); }
+void watch_for_interrupt() {
+  std::signal(SIGINT, on_interrupt);
+}
 
 void Console::log(const std::string& text) const {
   if (!quiet) std::fprintf(stderr, "%s\n", text.c_str());
@@ -68,7 +70,9 @@ Progress Console::progress() const {
   };
 }
 
-void Console::time(const std::string& stage, double seconds) { seconds_[stage] += seconds; }
+void Console::time(const std::string& stage, double seconds) {
+  seconds_[stage] += seconds;
+}
 
 void Console::finish(const std::string& command, const std::string& status,
                      const nlohmann::ordered_json& result) const {

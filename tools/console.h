@@ -28,10 +28,10 @@ class Console {
   bool verbose = false;
   int threads = 0;
 
-  void log(const std::string& text) const;      // stderr, unless quiet
-  void detail(const std::string& text) const;   // stderr, with -v
-  void warn(const std::string& text);           // stderr, and into the JSON's "warnings"
-  void say(const std::string& text) const;      // stdout, unless --json
+  void log(const std::string& text) const;     // stderr, unless quiet
+  void detail(const std::string& text) const;  // stderr, with -v
+  void warn(const std::string& text);          // stderr, and into the JSON's "warnings"
+  void say(const std::string& text) const;     // stdout, unless --json
 
   // Shows a bar on a terminal, nothing elsewhere; throws Interrupted after Ctrl-C.
   Progress progress() const;

@@ -38,7 +38,8 @@ void convert_file(const std::string& from, const std::string& to) {
   const std::string in = ending(from), out = ending(to);
   if (out == ".pfm") return write_pfm(to, read_float_image(from));
   if (one_of(out, {".tum", ".kitti", ".xf"})) return convert_poses(from, to);
-  const bool mesh = one_of(out, {".obj", ".stl", ".off"}) || (out == ".ply" && holds_triangles(from));
+  const bool mesh =
+      one_of(out, {".obj", ".stl", ".off"}) || (out == ".ply" && holds_triangles(from));
   if (mesh) return write_mesh(to, read_mesh(from));
   if (one_of(out, {".ply", ".pcd", ".xyz", ".txt", ".asc"})) {
     if (!holds_triangles(from)) return write_scan(to, read_scan(from));

@@ -51,10 +51,10 @@ void FieldReader::choice(std::string_view key, int& selected,
       selected = static_cast<int>(i);
       return;
     }
-  throw Error(Trouble::input,
-              reader_.place() + "/" + std::string(key) + ": '" + word + "' is none of " +
-                  joined(names),
-              did_you_mean(word, names));
+  throw Error(
+      Trouble::input,
+      reader_.place() + "/" + std::string(key) + ": '" + word + "' is none of " + joined(names),
+      did_you_mean(word, names));
 }
 
 void FieldReader::length(std::string_view name, double& value_m, Need need) {
@@ -62,8 +62,7 @@ void FieldReader::length(std::string_view name, double& value_m, Need need) {
 }
 
 void FieldReader::angle(std::string_view name, double& value_rad, Need need) {
-  value_rad =
-      need == Need::required ? reader_.angle_rad(name) : reader_.angle_rad(name, value_rad);
+  value_rad = need == Need::required ? reader_.angle_rad(name) : reader_.angle_rad(name, value_rad);
 }
 
 void FieldReader::time(std::string_view name, double& value_s, Need need) {
@@ -130,8 +129,9 @@ void FieldReader::one_of(const std::vector<std::string>& names, int& selected,
                 reader_.place() + ": exactly one of " + joined(names) + " is needed");
   }
   selected = found;
-  object(names[static_cast<std::size_t>(found)], [&](Fields& fields) { inner(found, fields); },
-         Need::required);
+  object(
+      names[static_cast<std::size_t>(found)], [&](Fields& fields) { inner(found, fields); },
+      Need::required);
 }
 
 }  // namespace scan

@@ -9,9 +9,13 @@
 namespace scan {
 namespace {
 
-std::string with(std::string_view name, const char* unit) { return std::string(name) + unit; }
+std::string with(std::string_view name, const char* unit) {
+  return std::string(name) + unit;
+}
 
-nlohmann::ordered_json three(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+nlohmann::ordered_json three(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 }  // namespace
 
@@ -21,7 +25,9 @@ void FieldWriter::number(std::string_view key, double& value, Need) {
 void FieldWriter::integer(std::string_view key, int& value, Need) {
   object_[std::string(key)] = value;
 }
-void FieldWriter::boolean(std::string_view key, bool& value) { object_[std::string(key)] = value; }
+void FieldWriter::boolean(std::string_view key, bool& value) {
+  object_[std::string(key)] = value;
+}
 void FieldWriter::text(std::string_view key, std::string& value, Need) {
   object_[std::string(key)] = value;
 }
@@ -63,8 +69,9 @@ void FieldWriter::object(std::string_view key, const std::function<void(Fields&)
 
 void FieldWriter::one_of(const std::vector<std::string>& names, int& selected,
                          const std::function<void(int, Fields&)>& inner) {
-  object(names[static_cast<std::size_t>(selected)],
-         [&](Fields& fields) { inner(selected, fields); }, Need::required);
+  object(
+      names[static_cast<std::size_t>(selected)], [&](Fields& fields) { inner(selected, fields); },
+      Need::required);
 }
 
 }  // namespace scan

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// One list of keys per struct, used to read a recipe and to write it back with all defaults filled in.
+// One list of keys per struct, used to read a recipe and to write it back with all defaults filled
+// in.
 //
-// A struct takes part by a function `void fields(Fields&, Struct&)` that names its keys. Quantities are
-// read in any unit (radius_mm, radius_m) and written in SI (radius_m), with digits that read back to the
-// same bits.
+// A struct takes part by a function `void fields(Fields&, Struct&)` that names its keys. Quantities
+// are read in any unit (radius_mm, radius_m) and written in SI (radius_m), with digits that read
+// back to the same bits.
 #pragma once
 
 #include <functional>

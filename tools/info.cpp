@@ -11,7 +11,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json three(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+ordered_json three(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 std::string extent_text(const Bounds& box) {
   const Eigen::Vector3d size = box.sizes();
@@ -29,11 +31,11 @@ ordered_json describe_mesh(const std::string& path, Console& console) {
   const Bounds box = bounds_of(mesh.vertices);
   console.say(path + ": mesh, " + std::to_string(mesh.vertices.size()) + " vertices, " +
               std::to_string(mesh.triangles.size()) + " triangles");
-  console.say("  extent " + extent_text(box) + "; " + std::to_string(census.components) +
-              " components, " +
-              (census.watertight ? "watertight, genus " + std::to_string(census.genus)
-                                 : std::to_string(census.boundary_edges) + " boundary edges, " +
-                                       std::to_string(census.non_manifold_edges) + " non-manifold"));
+  console.say(
+      "  extent " + extent_text(box) + "; " + std::to_string(census.components) + " components, " +
+      (census.watertight ? "watertight, genus " + std::to_string(census.genus)
+                         : std::to_string(census.boundary_edges) + " boundary edges, " +
+                               std::to_string(census.non_manifold_edges) + " non-manifold"));
   return {{"kind", "mesh"},
           {"vertices", mesh.vertices.size()},
           {"triangles", mesh.triangles.size()},
@@ -64,12 +66,8 @@ ordered_json describe_cloud(const std::string& path, Console& console) {
   console.say("  extent " + extent_text(box));
   for (const auto& [reason, count] : scan.misses)
     console.say("  " + std::to_string(count) + " rays without a point: " + reason);
-  return {{"kind", "points"},
-          {"points", scan.cloud.size()},
-          {"bounds", bounds_json(box)},
-          {"has", parts},
-          {"rows", scan.grid.rows},
-          {"columns", scan.grid.columns},
+  return {{"kind", "points"},     {"points", scan.cloud.size()}, {"bounds", bounds_json(box)},
+          {"has", parts},         {"rows", scan.grid.rows},      {"columns", scan.grid.columns},
           {"misses", scan.misses}};
 }
 
@@ -79,8 +77,8 @@ Action info_command(CommandLine& line) {
   auto path = std::make_shared<std::string>();
   line.input("FILE", *path, "a mesh, a cloud or a scan");
   return [path](Console& console) {
-    ordered_json result = holds_triangles(*path) ? describe_mesh(*path, console)
-                                                 : describe_cloud(*path, console);
+    ordered_json result =
+        holds_triangles(*path) ? describe_mesh(*path, console) : describe_cloud(*path, console);
     result["file"] = *path;
     console.finish("info", "ok", result);
     return 0;

@@ -25,8 +25,7 @@ void check_output(const std::string& path) {
     throw Error(Trouble::output, path + ": folder " + folder.string() + " does not exist");
 }
 
-std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths,
-                                          Console& console) {
+std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths, Console& console) {
   std::vector<Scan> scans;
   for (const std::string& path : paths) {
     scans.push_back(read_scan(path));

@@ -19,7 +19,8 @@ constexpr long recipe_version = 1;
 // Reads one part of a recipe, from its object or, when that is missing, from nothing but defaults.
 template <class Part>
 void read_part(JsonReader& reader, std::string_view key, Part& part, Need need) {
-  FieldReader(reader).object(key, [&](Fields& f) { fields(f, part); }, need);
+  FieldReader(reader).object(
+      key, [&](Fields& f) { fields(f, part); }, need);
 }
 
 template <class Part>
@@ -37,9 +38,8 @@ synth::EffectChoice read_effects(JsonReader& reader) {
   if (value == "auto") return {Kind::automatic, {}};
   if (value == "all") return {Kind::all, {}};
   if (value == "none") return {Kind::none, {}};
-  const bool list = value.is_array() && std::all_of(value.begin(), value.end(), [](const auto& e) {
-                      return e.is_string();
-                    });
+  const bool list = value.is_array() && std::all_of(value.begin(), value.end(),
+                                                    [](const auto& e) { return e.is_string(); });
   if (!list) reader.fail("effects", "must be \"auto\", \"all\", \"none\" or a list of effects");
   return {Kind::named, value.get<std::vector<std::string>>()};
 }
@@ -47,10 +47,14 @@ synth::EffectChoice read_effects(JsonReader& reader) {
 ordered_json to_json(const synth::EffectChoice& choice) {
   using Kind = synth::EffectChoice::Kind;
   switch (choice.kind) {
-    case Kind::automatic: return "auto";
-    case Kind::all: return "all";
-    case Kind::none: return "none";
-    case Kind::named: break;
+    case Kind::automatic:
+      return "auto";
+    case Kind::all:
+      return "all";
+    case Kind::none:
+      return "none";
+    case Kind::named:
+      break;
   }
   return choice.names;
 }

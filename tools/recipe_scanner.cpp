@@ -15,8 +15,9 @@ using synth::StereoPair;
 // Changes the variant's alternative unless it is the one already.
 template <class Variant, std::size_t... I>
 void select(Variant& variant, int index, std::index_sequence<I...>) {
-  (void)((static_cast<int>(I) == index && variant.index() != I ? (variant.template emplace<I>(), true)
-                                                               : false) ||
+  (void)((static_cast<int>(I) == index && variant.index() != I
+              ? (variant.template emplace<I>(), true)
+              : false) ||
          ...);
 }
 
@@ -52,7 +53,8 @@ void sensor_fields(Fields& f, Sensor& s) {
 }
 
 void scanner_fields(Fields& f, LaserLine& s) {
-  f.object("camera", [&](Fields& c) { camera_fields(c, s.camera); }, Need::required);
+  f.object(
+      "camera", [&](Fields& c) { camera_fields(c, s.camera); }, Need::required);
   f.length("baseline", s.baseline_m, Need::required);
   f.angle("triangulation", s.triangulation_rad, Need::required);
   f.angle("fan", s.fan_rad);
@@ -92,7 +94,8 @@ void scanner_fields(Fields& f, StereoPair& s) {
 }
 
 void scanner_fields(Fields& f, PhaseCamera& s) {
-  f.object("camera", [&](Fields& c) { camera_fields(c, s.camera); }, Need::required);
+  f.object(
+      "camera", [&](Fields& c) { camera_fields(c, s.camera); }, Need::required);
   f.frequencies("frequencies", s.frequencies_hz);
   f.number("electrons_at_1m", s.electrons_at_1m);
   f.number("contrast", s.contrast);

@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 
 // Our own models by name.
 const std::map<std::string, Shape (*)()> models = {{"bracket", synth::bracket},
-                                                          {"bud", synth::bud}};
+                                                   {"bud", synth::bud}};
 const std::map<std::string, double> mesh_units = {{"m", 1}, {"mm", 1e-3}, {"um", 1e-6}};
 
 template <class Map>
@@ -93,7 +93,8 @@ void read_object(JsonReader reader, const std::map<std::string, int>& materials,
   std::filesystem::path file;
   double unit_m = 1;
   if (reader.has("mesh")) {
-    if (reader.has("shape")) reader.fail("mesh", "stands beside a shape; an object has one of them");
+    if (reader.has("shape"))
+      reader.fail("mesh", "stands beside a shape; an object has one of them");
     file = std::filesystem::absolute(folder / reader.text("mesh")).lexically_normal();
     unit_m = look_up(mesh_units, reader.text("unit"), reader, "unit");
     Mesh mesh = read_object_mesh(file, reader);
@@ -103,10 +104,10 @@ void read_object(JsonReader reader, const std::map<std::string, int>& materials,
     object.geometry = read_object_shape(reader);
   }
   object.name = reader.text("name", "object " + std::to_string(scene.scene.objects.size()));
-  object.world_from_object = reader.has("world_from_object")
-                                 ? pose_from_json(reader.value("world_from_object"),
-                                                  reader.place() + "/world_from_object")
-                                 : reader.placement();
+  object.world_from_object =
+      reader.has("world_from_object")
+          ? pose_from_json(reader.value("world_from_object"), reader.place() + "/world_from_object")
+          : reader.placement();
   object.material = look_up(materials, reader.text("material"), reader, "material");
   reader.finish();
   scene.scene.objects.push_back(std::move(object));
@@ -120,8 +121,8 @@ struct TextureWriter {
     return {{"checker", {{"period_m", t.period_m}, {"contrast", t.contrast}}}};
   }
   ordered_json operator()(const synth::NoiseTexture& t) const {
-    return {{"noise",
-             {{"period_m", t.period_m}, {"octaves", t.octaves}, {"contrast", t.contrast}}}};
+    return {
+        {"noise", {{"period_m", t.period_m}, {"octaves", t.octaves}, {"contrast", t.contrast}}}};
   }
 };
 

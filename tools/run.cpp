@@ -24,9 +24,8 @@ Action run_command(CommandLine& line) {
     session.stage("simulate", [&](const auto& run, const Recipe& recipe) {
       simulate_run(run, recipe, {.keep_raw = arguments->settings.keep_raw}, console);
     });
-    session.stage("align", [&](const auto& run, const Recipe& recipe) {
-      align_run(run, recipe, console);
-    });
+    session.stage("align",
+                  [&](const auto& run, const Recipe& recipe) { align_run(run, recipe, console); });
     session.stage("reconstruct", [&](const auto& run, const Recipe& recipe) {
       reconstruct_run(run, recipe, console);
     });

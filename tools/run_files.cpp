@@ -16,7 +16,9 @@ std::string scan_name(std::size_t index) {
   return text;
 }
 
-std::filesystem::path recipe_path(const std::filesystem::path& run) { return run / "recipe.json"; }
+std::filesystem::path recipe_path(const std::filesystem::path& run) {
+  return run / "recipe.json";
+}
 
 std::filesystem::path scan_path(const std::filesystem::path& run, std::size_t index) {
   return run / "scans" / (scan_name(index) + ".ply");
@@ -26,7 +28,9 @@ std::filesystem::path raw_path(const std::filesystem::path& run, std::size_t ind
   return run / "raw" / scan_name(index);
 }
 
-std::filesystem::path truth_path(const std::filesystem::path& run) { return run / "truth"; }
+std::filesystem::path truth_path(const std::filesystem::path& run) {
+  return run / "truth";
+}
 
 std::vector<Scan> read_run_scans(const std::filesystem::path& run) {
   std::vector<Scan> scans;

@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-// What each stage leaves behind, as files or folders. timings.json belongs to none: it alone may differ
-// between equal runs.
+// What each stage leaves behind, as files or folders. timings.json belongs to none: it alone may
+// differ between equal runs.
 const std::map<std::string, std::vector<std::string>> stage_outputs = {
     {"simulate", {"effects.json", "scans", "truth", "raw"}},
     {"align", {"alignment.json", "poses.tum"}},

@@ -31,13 +31,13 @@ class RunSession {
   RunSession(const std::filesystem::path& recipe, const std::filesystem::path& run,
              const RunSettings& settings, Console& console);
 
-  // Runs a stage unless it is recorded as done and its outputs are there unchanged. A stage behind one
-  // that ran is always run again.
+  // Runs a stage unless it is recorded as done and its outputs are there unchanged. A stage behind
+  // one that ran is always run again.
   using Work = std::function<void(const std::filesystem::path& run, const Recipe& recipe)>;
   void stage(const std::string& name, const Work& work);
 
-  // Writes report.html unless it is there and no stage ran. It is no recorded stage: it shows seconds,
-  // and stages.json is the same for equal runs.
+  // Writes report.html unless it is there and no stage ran. It is no recorded stage: it shows
+  // seconds, and stages.json is the same for equal runs.
   void report();
 
   // Prints the results that the folder holds; the exit code is 1 if there is a verdict that fails.

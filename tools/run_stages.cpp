@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
-#include "libscan/io/json_output.h"
 #include "libscan/io/atomic_file.h"
+#include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/truth_file.h"

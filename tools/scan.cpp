@@ -26,8 +26,7 @@ int main(int argc, char** argv) {
           {"report", "write a run's report as one self-contained page",
            "scan report /tmp/bracket /tmp/bracket.html", report_command},
           {"info", "say what a file holds", "scan info surface.ply", info_command},
-          {"convert", "change a file's format", "scan convert part.stl part.ply",
-           convert_command},
+          {"convert", "change a file's format", "scan convert part.stl part.ply", convert_command},
           {"version", "this program's version and libraries", "scan version --json",
            version_command},
       });

@@ -62,8 +62,9 @@ void simulate_run(const std::filesystem::path& run, const Recipe& recipe,
     Scan scan = acquire(frames, recipe.acquire);
     acquire_seconds += decoding.seconds();
     if (scan.cloud.empty())
-      throw Error(Trouble::computation, "scan " + scan_name(i) + ": no ray gave a point; does the "
-                                        "scanner see the object from this viewpoint?");
+      throw Error(Trouble::computation, "scan " + scan_name(i) +
+                                            ": no ray gave a point; does the "
+                                            "scanner see the object from this viewpoint?");
     scan.name = scan_name(i);
     scan.world_from_scanner_guess = guesses[i];
     write_scan(scan_path(run, i), scan);

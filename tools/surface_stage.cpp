@@ -15,8 +15,8 @@ PointCloud without_large_sigma(const PointCloud& cloud, double max_sigma_m) {
   for (std::uint32_t i = 0; i < cloud.size(); ++i)
     if (cloud.sigma_m[i] <= max_sigma_m) kept.push_back(i);
   if (kept.empty())
-    throw Error(Trouble::computation, "no point has a sigma of at most " +
-                                          readable_length(max_sigma_m) + " (max_sigma)");
+    throw Error(Trouble::computation,
+                "no point has a sigma of at most " + readable_length(max_sigma_m) + " (max_sigma)");
   return subset(cloud, kept);
 }
 
@@ -45,9 +45,9 @@ SurfaceResult make_surface(PointCloud cloud, const ReconstructSettings& settings
                  " points without coordinates, normal or place in the box were left out");
   if (settings.trim_m > 0) trim(result, settings.trim_m);
   if (result.surface.triangles.empty())
-    throw Error(Trouble::computation,
-                "nothing of the surface is within " + readable_length(settings.trim_m) +
-                    " of a point (--trim)");
+    throw Error(Trouble::computation, "nothing of the surface is within " +
+                                          readable_length(settings.trim_m) +
+                                          " of a point (--trim)");
   return result;
 }
 

@@ -9,10 +9,9 @@
 
 namespace scan {
 
-// Leaves out points with too large a sigma, thins, reconstructs and trims. The cloud is in the world
-// frame and has normals.
-SurfaceResult make_surface(PointCloud cloud, const ReconstructSettings& settings,
-                           Console& console);
+// Leaves out points with too large a sigma, thins, reconstructs and trims. The cloud is in the
+// world frame and has normals.
+SurfaceResult make_surface(PointCloud cloud, const ReconstructSettings& settings, Console& console);
 
 std::string_view name_of(ReconstructMethod method);
 

@@ -84,8 +84,7 @@ std::vector<Measurement> measure_disparity(const Arguments& arguments) {
   const Image<float> measured = read_float_image(arguments.measured);
   const Image<float> truth = read_float_image(arguments.truth);
   auto measurements = disparity_error(measured, truth, arguments.doffs_px);
-  if (!arguments.picture.empty())
-    write_png(arguments.picture, disparity_sheet(measured, truth));
+  if (!arguments.picture.empty()) write_png(arguments.picture, disparity_sheet(measured, truth));
   return measurements;
 }
 
@@ -137,16 +136,19 @@ int verify(const Arguments& arguments, Console& console) {
 
 Action verify_command(CommandLine& line) {
   auto arguments = std::make_shared<Arguments>();
-  line.input("MEASURED", arguments->measured, "a mesh, a cloud, a disparity (.pfm) or a run folder");
+  line.input("MEASURED", arguments->measured,
+             "a mesh, a cloud, a disparity (.pfm) or a run folder");
   line.option("--truth", arguments->truth,
               "the reference: a mesh, a run's truth/surface.json, or a disparity");
   line.option("--poses", arguments->poses, "estimated poses");
   line.option("--true-poses", arguments->true_poses, "the poses they are held against");
-  line.length("--threshold", arguments->threshold_m, "distance that counts as right in the F-score");
+  line.length("--threshold", arguments->threshold_m,
+              "distance that counts as right in the F-score");
   line.number("--doffs", arguments->doffs_px, -1e6, 1e6,
               "disparity: difference of the principal points in px, for the depth error");
   line.option("--limits", arguments->limits, "JSON list of limits, as in a recipe");
-  line.option("--picture", arguments->picture, "six views coloured by deviation; disparity: it, the truth, the error (.png)");
+  line.option("--picture", arguments->picture,
+              "six views coloured by deviation; disparity: it, the truth, the error (.png)");
   return [arguments](Console& console) { return verify(*arguments, console); };
 }
 

@@ -22,7 +22,8 @@ std::vector<std::vector<Eigen::Vector3d>> picked_points(const std::vector<Scan>&
   for (const Scan& scan : scans) {
     const std::size_t step = std::max<std::size_t>(1, scan.cloud.size() / points_per_pose_error);
     auto& points = picked.emplace_back();
-    for (std::size_t i = 0; i < scan.cloud.size(); i += step) points.push_back(scan.cloud.points[i]);
+    for (std::size_t i = 0; i < scan.cloud.size(); i += step)
+      points.push_back(scan.cloud.points[i]);
   }
   return picked;
 }
@@ -35,8 +36,10 @@ std::vector<Measurement> measure_ranges(const std::vector<Scan>& scans, const Tr
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const auto first = static_cast<std::uint32_t>(all.rays.size());
     for (const std::uint32_t ray : scans[i].ray) rays.push_back(first + ray);
-    if (i == 0) cloud = scans[i].cloud;
-    else append(cloud, scans[i].cloud);
+    if (i == 0)
+      cloud = scans[i].cloud;
+    else
+      append(cloud, scans[i].cloud);
     all.rays.insert(all.rays.end(), truth.scans[i].rays.begin(), truth.scans[i].rays.end());
   }
   return range_error(cloud, rays, all);
@@ -49,9 +52,8 @@ void add(std::vector<Measurement>& to, std::vector<Measurement> more) {
 }  // namespace
 
 Mesh in_true_world(const RunResult& result, const Truth& truth) {
-  return transformed(
-      gauge(result.world_from_scan, true_poses(truth), picked_points(result.scans)),
-      result.surface);
+  return transformed(gauge(result.world_from_scan, true_poses(truth), picked_points(result.scans)),
+                     result.surface);
 }
 
 std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth,

@@ -12,13 +12,13 @@ namespace scan {
 
 // What a run measured, in the world frame where it is not the scanner's.
 struct RunResult {
-  std::vector<Scan> scans;                 // scanner frames
-  std::vector<Pose> world_from_scan;       // as aligned
+  std::vector<Scan> scans;            // scanner frames
+  std::vector<Pose> world_from_scan;  // as aligned
   Mesh surface;
 };
 
-// Surface, topology, poses and ranges of a run. Surface figures are taken after the one rigid motion
-// of the world frame that fits the poses best: an alignment cannot know where the world is.
+// Surface, topology, poses and ranges of a run. Surface figures are taken after the one rigid
+// motion of the world frame that fits the poses best: an alignment cannot know where the world is.
 std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth,
                                      const VerifySettings& settings);
 

@@ -5,12 +5,12 @@
 #ifdef LIBSCAN_WITH_CGAL
 #include <CGAL/version.h>
 #endif
-#include <Eigen/Core>
 #include <ceres/version.h>
 #include <embree3/rtcore_config.h>
+#include <pcl/pcl_config.h>
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/version.hpp>
-#include <pcl/pcl_config.h>
 
 #include "tools/commands.h"
 
@@ -23,7 +23,9 @@ std::string dotted(int major, int minor, int patch) {
 
 }  // namespace
 
-std::string version_text() { return LIBSCAN_VERSION; }
+std::string version_text() {
+  return LIBSCAN_VERSION;
+}
 
 nlohmann::ordered_json version_json() {
   nlohmann::ordered_json libraries = {

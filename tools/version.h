@@ -8,7 +8,7 @@
 
 namespace scan {
 
-std::string version_text();               // "0.1.0"
-nlohmann::ordered_json version_json();    // version, compiler, and the libraries it was built with
+std::string version_text();             // "0.1.0"
+nlohmann::ordered_json version_json();  // version, compiler, and the libraries it was built with
 
 }  // namespace scan

@@ -13,9 +13,9 @@ enum class PeakMethod { centroid, gaussian, parabola };
 struct LaserLineOptions {
   PeakMethod peak = PeakMethod::gaussian;
   double threshold_sigmas = 6;  // a peak must stand so far above the row's background noise
-  // Largest rms deviation of the stripe from its Gaussian, beyond noise, as a share of its height. A
-  // stripe cut by an edge has lost its shape and shifts by up to a beam's width (Curless and Levoy
-  // 1995); texture and speckle spoil the shape of good ones too.
+  // Largest rms deviation of the stripe from its Gaussian, beyond noise, as a share of its height.
+  // A stripe cut by an edge has lost its shape and shifts by up to a beam's width (Curless and
+  // Levoy 1995); texture and speckle spoil the shape of good ones too.
   double max_shape_error = 0.15;
 };
 

@@ -113,8 +113,8 @@ RayOutcome decode_pixel(const PhaseTaps& frames, const PhaseOptions& options, do
   if (!distance.miss.empty()) return missed(distance.miss);
   const auto width = static_cast<std::size_t>(calibration.camera.width_px);
   const std::size_t row = pixel / width, column = pixel % width;
-  const auto ray = ray_through(calibration.camera,
-                               {static_cast<double>(column), static_cast<double>(row)});
+  const auto ray =
+      ray_through(calibration.camera, {static_cast<double>(column), static_cast<double>(row)});
   if (!ray) return missed(reason::undetermined);
   return decoding::point_on_ray(ray->normalized(), distance.distance_m, distance.sigma_m,
                                 amplitude_e / calibration.sensor.gain_e_per_dn);

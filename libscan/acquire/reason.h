@@ -7,10 +7,11 @@
 
 namespace scan::reason {
 
-inline constexpr std::string_view no_signal = "no signal";        // nothing above the noise
-inline constexpr std::string_view saturated = "saturated";        // the peak is clipped
-inline constexpr std::string_view ambiguous = "ambiguous";        // no unique peak, match or wrap
-inline constexpr std::string_view inconsistent = "inconsistent";  // left-right check, frequencies, stripe shape
+inline constexpr std::string_view no_signal = "no signal";  // nothing above the noise
+inline constexpr std::string_view saturated = "saturated";  // the peak is clipped
+inline constexpr std::string_view ambiguous = "ambiguous";  // no unique peak, match or wrap
+inline constexpr std::string_view inconsistent =
+    "inconsistent";  // left-right check, frequencies, stripe shape
 inline constexpr std::string_view out_of_range = "out of range";  // outside the device's limits
 inline constexpr std::string_view undetermined = "undetermined";  // the geometry gives no depth
 inline constexpr std::string_view border = "border";              // peak cut by the image's edge

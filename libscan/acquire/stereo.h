@@ -25,9 +25,9 @@ struct DisparityMap {
 };
 
 // No texture along the row: no signal; not unique, or an island of its own (a speckle): ambiguous;
-// partner outside the right image, or too near to a depth edge: border; left-right check, or windows that do not correlate:
-// inconsistent. A pattern that repeats within the search range without end is beyond these checks:
-// one of its places is taken.
+// partner outside the right image, or too near to a depth edge: border; left-right check, or
+// windows that do not correlate: inconsistent. A pattern that repeats within the search range
+// without end is beyond these checks: one of its places is taken.
 DisparityMap match(const ImagePair& pair, const StereoOptions& options = {});
 
 // Points in the left camera's frame with rank-one covariance by first-order propagation. A

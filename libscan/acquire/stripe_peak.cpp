@@ -42,8 +42,9 @@ std::optional<Location> fit_stripe(std::span<const double> signal_e, const Strip
   return fit;
 }
 
-// Whether the samples deviate from the fitted Gaussian by more than `max_shape_error` of its height and
-// noise together. The noise part is the mean variance, uncertain by sqrt(2 sum v^2) / n; three sigma.
+// Whether the samples deviate from the fitted Gaussian by more than `max_shape_error` of its height
+// and noise together. The noise part is the mean variance, uncertain by sqrt(2 sum v^2) / n; three
+// sigma.
 bool is_misshapen(const Samples& samples, const Gaussian& shape, double max_shape_error) {
   double excess = 0, variance2 = 0;
   for (std::size_t i = 0; i < samples.signal_e.size(); ++i) {

@@ -20,8 +20,8 @@ struct StripePeak {
   double height_e = 0;  // above the background
 };
 
-// `row_e` in electrons. A stripe whose +-3 sigma reach over the row's end is a miss (border), one that
-// is no Gaussian too (inconsistent).
+// `row_e` in electrons. A stripe whose +-3 sigma reach over the row's end is a miss (border), one
+// that is no Gaussian too (inconsistent).
 StripePeak locate_stripe(std::span<const double> row_e, const Sensor& sensor,
                          const LaserLineOptions& options);
 

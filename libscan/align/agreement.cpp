@@ -44,8 +44,8 @@ Meeting meet(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double
     if ((other.world_from_scan.linear() * there).dot(normal) < least_cosine) continue;
     nearest_m = std::sqrt(found->distance2_m2);
     const double residual_m = std::abs(there.dot(moved - other.cloud->points[found->index]));
-    meeting = residual_m <= std::max(tolerance_m, other.tolerance_m) ? Meeting::agreeing
-                                                                     : Meeting::apart;
+    meeting =
+        residual_m <= std::max(tolerance_m, other.tolerance_m) ? Meeting::agreeing : Meeting::apart;
   }
   return meeting;
 }
@@ -82,9 +82,9 @@ Agreement agreement(const PosedScan& scan, std::span<const PosedScan> others, do
   parallel_for(meetings.size(), [&](std::size_t k) {
     const std::size_t i = k * stride;
     if (cloud.normals[i].isZero(0)) return;
-    meetings[k] = meet(scan.world_from_scan * cloud.points[i],
-                       scan.world_from_scan.linear() * cloud.normals[i], scan.tolerance_m, others,
-                       reach_m);
+    meetings[k] =
+        meet(scan.world_from_scan * cloud.points[i],
+             scan.world_from_scan.linear() * cloud.normals[i], scan.tolerance_m, others, reach_m);
   });
   const auto count = [&](Meeting kind) {
     return static_cast<double>(std::count(meetings.begin(), meetings.end(), kind));

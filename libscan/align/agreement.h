@@ -3,9 +3,10 @@
 // How well scans lie on each other where they meet, measured by what each scan's own noise allows.
 //
 // An alignment that ended in a wrong minimum still has a small step and, among the pairs that its
-// gates keep, small residuals. It shows in the points that should have partners and miss them. Right
-// poses of one object's scans reach 0.9; of outdoor scans, whose views share little of what they see
-// within the reach, 0.2: the figure ranks poses of one pair, no threshold tells right from wrong.
+// gates keep, small residuals. It shows in the points that should have partners and miss them.
+// Right poses of one object's scans reach 0.9; of outdoor scans, whose views share little of what
+// they see within the reach, 0.2: the figure ranks poses of one pair, no threshold tells right from
+// wrong.
 #pragma once
 
 #include <span>

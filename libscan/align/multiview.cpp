@@ -52,8 +52,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Without the points whose sigma is more than twice the scan's median: readings at grazing incidence,
-// which slide along the surface rather than off it and bend the normals around them.
+// Without the points whose sigma is more than twice the scan's median: readings at grazing
+// incidence, which slide along the surface rather than off it and bend the normals around them.
 PointCloud without_weak_points(PointCloud cloud) {
   if (cloud.sigma_m.empty()) return cloud;
   const double limit_m = most_sigma_in_medians * median(cloud.sigma_m);

@@ -180,7 +180,9 @@ void Placement::run(const Progress& progress) {
 
 }  // namespace
 
-double overlap_reach_m(const PointCloud& cloud) { return guess_share_of_extent * extent_m(cloud); }
+double overlap_reach_m(const PointCloud& cloud) {
+  return guess_share_of_extent * extent_m(cloud);
+}
 
 double predicted_overlap(const PointCloud& a, const Pose& world_from_a, const PointCloud& b,
                          const KdTree& b_search, const Pose& world_from_b, double distance_m) {

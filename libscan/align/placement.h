@@ -10,7 +10,8 @@
 
 namespace scan {
 
-// How near to another scan a point of this one counts as seen by both: as far as a guess may be off.
+// How near to another scan a point of this one counts as seen by both: as far as a guess may be
+// off.
 double overlap_reach_m(const PointCloud& cloud);
 
 // Share of the points of `a` that have a point of `b` within `distance_m` whose normal is less than

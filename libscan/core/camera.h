@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// The pinhole camera with radial and tangential distortion (Brown 1966; OpenCV's five coefficients).
+// The pinhole camera with radial and tangential distortion (Brown 1966; OpenCV's five
+// coefficients).
 #pragma once
 
 #include <Eigen/Core>

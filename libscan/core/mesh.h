@@ -43,11 +43,11 @@ Mesh transformed(const Pose& a_from_b, const Mesh& mesh_in_b);
 // (`watertight` and no non-manifold vertex); it is the sum over all components.
 struct EdgeCensus {
   std::size_t edges = 0;
-  std::size_t boundary_edges = 0;      // in one triangle only
-  std::size_t non_manifold_edges = 0;  // in three or more
-  std::size_t misoriented_edges = 0;   // two triangles that run through it the same way
+  std::size_t boundary_edges = 0;         // in one triangle only
+  std::size_t non_manifold_edges = 0;     // in three or more
+  std::size_t misoriented_edges = 0;      // two triangles that run through it the same way
   std::size_t non_manifold_vertices = 0;  // whose triangles are not all connected by edges there
-  std::size_t components = 0;          // of triangles connected by shared vertices
+  std::size_t components = 0;             // of triangles connected by shared vertices
   std::size_t used_vertices = 0;
   long euler_characteristic = 0;
   long genus = 0;

@@ -29,9 +29,8 @@ int thread_count() {
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t, std::size_t)>& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
-  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t i) {
-    body(i * chunk, std::min(count, (i + 1) * chunk));
-  });
+  tbb::parallel_for(std::size_t{0}, chunks,
+                    [&](std::size_t i) { body(i * chunk, std::min(count, (i + 1) * chunk)); });
 }
 
 }  // namespace scan

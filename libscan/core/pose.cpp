@@ -76,7 +76,8 @@ double translation_distance_m(const Pose& a, const Pose& b) {
 
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+  Eigen::Vector3d signs(1, 1,
+                        (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 

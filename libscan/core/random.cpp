@@ -39,7 +39,8 @@ double deviance(double k, double mean) {
 }
 
 // By the saddle point (Loader 2000, "Fast and accurate computation of binomial probabilities"):
-// right to rounding for every mean, where k log(mean) - mean - log k! loses digits as the mean grows.
+// right to rounding for every mean, where k log(mean) - mean - log k! loses digits as the mean
+// grows.
 double log_poisson_probability(double k, double mean) {
   if (k == 0) return -mean;
   return -stirling_error(k) - deviance(k, mean) - 0.5 * std::log(2 * std::numbers::pi * k);

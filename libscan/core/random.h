@@ -19,8 +19,8 @@ class RandomStream {
   RandomStream(std::uint64_t seed, std::uint32_t scan, std::uint64_t ray);
 
   std::uint32_t bits32();
-  double uniform();                  // in [0, 1), 53 bits
-  double normal();                   // mean 0, variance 1 (Box and Muller)
+  double uniform();                    // in [0, 1), 53 bits
+  double normal();                     // mean 0, variance 1 (Box and Muller)
   std::uint64_t poisson(double mean);  // exact for every finite mean >= 0
 
  private:

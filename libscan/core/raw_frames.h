@@ -24,7 +24,7 @@ namespace scan {
 struct Sensor {
   double gain_e_per_dn = 1;
   double offset_dn = 0;
-  double read_noise_e = 0;  // 1 sigma
+  double read_noise_e = 0;   // 1 sigma
   double full_well_e = 1e9;  // electrons at which a pixel saturates
   int bits = 16;             // at most 16
 };
@@ -33,7 +33,7 @@ struct Sensor {
 struct LaserLineCalibration {
   Camera camera;
   Eigen::Vector3d plane_normal = Eigen::Vector3d::UnitX();  // unit, camera frame
-  double plane_offset_m = 0;                                // normal . x = offset on the light plane
+  double plane_offset_m = 0;  // normal . x = offset on the light plane
   Sensor sensor;
   double min_range_m = 0;  // along camera z; peaks outside are no points
   double max_range_m = 1e9;
@@ -43,12 +43,13 @@ struct LaserLineCalibration {
 // step * height + row; grid rows are steps.
 struct StripeImages {
   LaserLineCalibration calibration;
-  std::vector<Image<std::uint16_t>> images;   // DN, one per step
-  std::vector<Pose> scanner_from_camera;      // one per step, from the encoder
+  std::vector<Image<std::uint16_t>> images;  // DN, one per step
+  std::vector<Pose> scanner_from_camera;     // one per step, from the encoder
 };
 
-// Stereo: a rectified pair. A left pixel (column, row) is seen at (column - d, row) on the right, and
-// Z = focal_px * baseline_m / (d + doffs_px) (Middlebury's convention). Scanner frame = left camera.
+// Stereo: a rectified pair. A left pixel (column, row) is seen at (column - d, row) on the right,
+// and Z = focal_px * baseline_m / (d + doffs_px) (Middlebury's convention). Scanner frame = left
+// camera.
 struct StereoCalibration {
   int width_px = 0;
   int height_px = 0;
@@ -69,7 +70,8 @@ struct ImagePair {
 };
 
 // Phase camera (amplitude-modulated continuous wave): four taps per frequency,
-// C_k = B + A cos(phi + k pi/2) electrons, phi = 4 pi f d / c, d the distance along the pixel's ray.
+// C_k = B + A cos(phi + k pi/2) electrons, phi = 4 pi f d / c, d the distance along the pixel's
+// ray.
 struct PhaseCalibration {
   Camera camera;
   std::vector<double> frequencies_hz;
@@ -86,7 +88,7 @@ struct PhaseTaps {
 // Pulsed lidar: the digitised echo of each pulse.
 struct WaveformCalibration {
   double sample_interval_s = 1e-9;
-  double window_start_s = 0;  // first sample, after the middle of the emitted pulse
+  double window_start_s = 0;    // first sample, after the middle of the emitted pulse
   double pulse_sigma_s = 2e-9;  // standard deviation of the Gaussian pulse as received
   Sensor sensor;
 };

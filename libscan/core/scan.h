@@ -20,10 +20,10 @@ struct RayGrid {
 
 struct Scan {
   std::string name;
-  PointCloud cloud;                          // scanner frame
-  std::vector<std::uint32_t> ray;            // index of each point's ray; empty: unknown
-  RayGrid grid;                              // ray = row * columns + column
-  std::map<std::string, std::size_t> misses;  // reason -> rays without a point
+  PointCloud cloud;                                     // scanner frame
+  std::vector<std::uint32_t> ray;                       // index of each point's ray; empty: unknown
+  RayGrid grid;                                         // ray = row * columns + column
+  std::map<std::string, std::size_t> misses;            // reason -> rays without a point
   Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  // scanner frame: normals face this point
   Pose world_from_scanner_guess = Pose::Identity();
 };

@@ -55,8 +55,7 @@ DistanceField simple_field(const PlaneShape&, const Eigen::Vector3d& x) {
 
 DistanceField simple_field(const SphereShape& s, const Eigen::Vector3d& x) {
   const double length = x.norm();
-  return {length - s.radius_m,
-          length > 0 ? Eigen::Vector3d(x / length) : Eigen::Vector3d::UnitX()};
+  return {length - s.radius_m, length > 0 ? Eigen::Vector3d(x / length) : Eigen::Vector3d::UnitX()};
 }
 
 DistanceField simple_field(const CylinderShape& c, const Eigen::Vector3d& x) {
@@ -96,7 +95,9 @@ DistanceField smooth_minimum(const DistanceField& a, const DistanceField& b, dou
   return {low.value_m - h * h * k / 4, (1 - h / 2) * low.gradient + h / 2 * high.gradient};
 }
 
-DistanceField negated(const DistanceField& f) { return {-f.value_m, -f.gradient}; }
+DistanceField negated(const DistanceField& f) {
+  return {-f.value_m, -f.gradient};
+}
 
 DistanceField simple_field(const CombinedShape& c, const Eigen::Vector3d& x) {
   using Operation = CombinedShape::Operation;
@@ -140,7 +141,8 @@ Bounds local_bounds(const Shape& shape) {
             Bounds box = bounds_of(c.parts.front());
             for (std::size_t i = 1; i < c.parts.size(); ++i) {
               if (c.operation == Operation::unite) box.extend(bounds_of(c.parts[i]));
-              if (c.operation == Operation::intersect) box = box.intersection(bounds_of(c.parts[i]));
+              if (c.operation == Operation::intersect)
+                box = box.intersection(bounds_of(c.parts[i]));
             }
             // a smooth union bulges by at most a quarter of the blend width per joint
             const double bulge = c.operation == Operation::unite
@@ -155,35 +157,35 @@ Bounds local_bounds(const Shape& shape) {
 }  // namespace
 
 void check(const Shape& shape) {
-  std::visit(Overloaded{[](const PlaneShape&) {},
-                        [](const SphereShape& s) { check_positive("sphere", "radius", s.radius_m); },
-                        [](const CylinderShape& c) {
-                          check_positive("cylinder", "radius", c.radius_m);
-                          check_positive("cylinder", "height", c.height_m);
-                        },
-                        [](const BoxShape& b) {
-                          for (const double side : b.size_m) check_positive("box", "size", side);
-                          check_not_negative("box", "rounding", b.rounding_m);
-                          if (2 * b.rounding_m > b.size_m.minCoeff())
-                            throw Error(Trouble::input,
-                                        "box: rounding is " + std::to_string(b.rounding_m) +
-                                            " m, at most half of the smallest side");
-                        },
-                        [](const TorusShape& t) {
-                          check_positive("torus", "major radius", t.major_radius_m);
-                          check_positive("torus", "minor radius", t.minor_radius_m);
-                          if (t.minor_radius_m > t.major_radius_m)
-                            throw Error(Trouble::input,
-                                        "torus: minor radius is " + std::to_string(t.minor_radius_m) +
-                                            " m, at most the major radius");
-                        },
-                        [](const CombinedShape& c) {
-                          check_not_negative("combination", "blend", c.blend_m);
-                          if (c.parts.empty())
-                            throw Error(Trouble::input, "combination: no parts");
-                          for (const PlacedShape& part : c.parts) check(part.shape);
-                        }},
-             shape);
+  std::visit(
+      Overloaded{[](const PlaneShape&) {},
+                 [](const SphereShape& s) { check_positive("sphere", "radius", s.radius_m); },
+                 [](const CylinderShape& c) {
+                   check_positive("cylinder", "radius", c.radius_m);
+                   check_positive("cylinder", "height", c.height_m);
+                 },
+                 [](const BoxShape& b) {
+                   for (const double side : b.size_m) check_positive("box", "size", side);
+                   check_not_negative("box", "rounding", b.rounding_m);
+                   if (2 * b.rounding_m > b.size_m.minCoeff())
+                     throw Error(Trouble::input, "box: rounding is " +
+                                                     std::to_string(b.rounding_m) +
+                                                     " m, at most half of the smallest side");
+                 },
+                 [](const TorusShape& t) {
+                   check_positive("torus", "major radius", t.major_radius_m);
+                   check_positive("torus", "minor radius", t.minor_radius_m);
+                   if (t.minor_radius_m > t.major_radius_m)
+                     throw Error(Trouble::input, "torus: minor radius is " +
+                                                     std::to_string(t.minor_radius_m) +
+                                                     " m, at most the major radius");
+                 },
+                 [](const CombinedShape& c) {
+                   check_not_negative("combination", "blend", c.blend_m);
+                   if (c.parts.empty()) throw Error(Trouble::input, "combination: no parts");
+                   for (const PlacedShape& part : c.parts) check(part.shape);
+                 }},
+      shape);
 }
 
 DistanceField field(const Shape& shape, const Eigen::Vector3d& x) {
@@ -192,8 +194,7 @@ DistanceField field(const Shape& shape, const Eigen::Vector3d& x) {
 
 DistanceField field(const PlacedShape& placed, const Eigen::Vector3d& x) {
   const Eigen::Matrix3d rotation = placed.parent_from_shape.linear();
-  const Eigen::Vector3d local =
-      rotation.transpose() * (x - placed.parent_from_shape.translation());
+  const Eigen::Vector3d local = rotation.transpose() * (x - placed.parent_from_shape.translation());
   const DistanceField f = field(placed.shape, local);
   return {f.value_m, rotation * f.gradient};
 }
@@ -204,8 +205,7 @@ Bounds bounds_of(const PlacedShape& placed) {
     return Bounds(Eigen::Vector3d::Constant(-infinity), Eigen::Vector3d::Constant(infinity));
   Bounds box;
   for (int corner = 0; corner < 8; ++corner)
-    box.extend(placed.parent_from_shape *
-               local.corner(static_cast<Bounds::CornerType>(corner)));
+    box.extend(placed.parent_from_shape * local.corner(static_cast<Bounds::CornerType>(corner)));
   return box;
 }
 

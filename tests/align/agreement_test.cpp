@@ -32,18 +32,20 @@ double agreeing_when_lifted(double lift_m, double noise_m) {
   const KdTree a_search(a.points), b_search(b.points);
   const std::vector<PosedScan> others = {
       {&b, &b_search, Pose(Eigen::Translation3d(0, 0, lift_m)), tolerated_residual_m(b, b_search)}};
-  return agreement({&a, &a_search, Pose::Identity(), tolerated_residual_m(a, a_search)}, others, 0.1)
+  return agreement({&a, &a_search, Pose::Identity(), tolerated_residual_m(a, a_search)}, others,
+                   0.1)
       .agreeing;
 }
 
-// Two samples of one surface with equal noise differ by sqrt(2) sigma; three sigma of one are 2.1 of
-// the difference, which hold 96.6 %; the sampling of 1024 points adds 0.6 % (one sigma).
+// Two samples of one surface with equal noise differ by sqrt(2) sigma; three sigma of one are 2.1
+// of the difference, which hold 96.6 %; the sampling of 1024 points adds 0.6 % (one sigma).
 TEST(Agreement, HoldsForTwoScansOfOneSurface) {
   EXPECT_GT(agreeing_when_lifted(0, 0.002), 0.94);
   EXPECT_GT(agreeing_when_lifted(0, 0), 0.94);
 }
 
-// Five sigma off, next to no point is within three sigma: P(|5 + sqrt(2) z| < 3) = 7.9 % at the most.
+// Five sigma off, next to no point is within three sigma: P(|5 + sqrt(2) z| < 3) = 7.9 % at the
+// most.
 TEST(Agreement, IsLostByAMotionBeyondTheNoise) {
   EXPECT_LT(agreeing_when_lifted(0.015, 0.002), 0.1);
 }

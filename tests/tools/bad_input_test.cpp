@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// Every kind of broken input gets one clear line, the documented exit code, and leaves nothing behind.
+// Every kind of broken input gets one clear line, the documented exit code, and leaves nothing
+// behind.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,9 +35,10 @@ std::string ply_header(const std::string& vertices) {
 
 // A sphere's points with normals: good input for align and reconstruct.
 std::string sphere_ply(int count, double x_offset) {
-  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(count) +
-                     "\nproperty double x\nproperty double y\nproperty double z\nproperty double nx\n"
-                     "property double ny\nproperty double nz\nend_header\n";
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex " + std::to_string(count) +
+      "\nproperty double x\nproperty double y\nproperty double z\nproperty double nx\n"
+      "property double ny\nproperty double nz\nend_header\n";
   for (int i = 0; i < count; ++i) {
     const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z), a = 2.399963 * i;
     const double x = r * std::cos(a), y = r * std::sin(a);
@@ -120,8 +122,8 @@ TEST(BadInput, ScansWithoutOverlapAreNotCalledAligned) {
   const std::string a = (folder / "a.ply").string(), b = (folder / "b.ply").string();
   spill(a, sphere_ply(500, 0));
   spill(b, sphere_ply(500, 100));
-  const Outcome outcome = run_scan(
-      {"align", a, b, (folder / "aligned").string(), "--max-distance", "1cm", "--json"});
+  const Outcome outcome =
+      run_scan({"align", a, b, (folder / "aligned").string(), "--max-distance", "1cm", "--json"});
   expect_failure(outcome, computation, "aligned");
   EXPECT_NE(outcome.out.find("\"status\": \"error\""), std::string::npos) << outcome.out;
   const std::string alignment = slurp(folder / "aligned/alignment.json");
@@ -132,8 +134,8 @@ TEST(BadInput, OutputThatCannotBeWrittenIsFoundBeforeTheWork) {
   const Folder folder;
   const std::string points = (folder / "points.ply").string();
   spill(points, sphere_ply(500, 0));
-  expect_failure(run_scan({"reconstruct", points, (folder / "no/such/folder.ply").string()}), output,
-                 "folder.ply");
+  expect_failure(run_scan({"reconstruct", points, (folder / "no/such/folder.ply").string()}),
+                 output, "folder.ply");
   expect_failure(run_scan({"reconstruct", points, folder.path().string()}), output,
                  folder.path().string());
   expect_failure(run_scan({"convert", points, "/proc/points.xyz"}), output, "/proc/points.xyz");
@@ -142,15 +144,16 @@ TEST(BadInput, OutputThatCannotBeWrittenIsFoundBeforeTheWork) {
 TEST(Usage, MistypedWordsGetAHint) {
   expect_failure(run_scan({"recontruct"}), usage, "reconstruct");
   expect_failure(run_scan({"reconstruct", "a.ply", "b.ply", "--deph", "8"}), usage, "--depth");
-  expect_failure(run_scan({"reconstruct", "a.ply", "b.ply", "--trim", "2furlongs"}), usage, "--trim");
+  expect_failure(run_scan({"reconstruct", "a.ply", "b.ply", "--trim", "2furlongs"}), usage,
+                 "--trim");
   expect_failure(run_scan({"reconstruct", "a.ply", "b.ply", "--depth", "99"}), usage, "99");
   expect_failure(run_scan({"align", "a.ply", "b.ply", "--method", "magic"}), usage, "magic");
   expect_failure(run_scan({}), usage, "scan --help");
 }
 
 TEST(Usage, HelpAndVersionSucceed) {
-  for (const char* command : {"run", "simulate", "acquire", "align", "reconstruct", "verify", "report",
-                              "info", "convert", "version"}) {
+  for (const char* command : {"run", "simulate", "acquire", "align", "reconstruct", "verify",
+                              "report", "info", "convert", "version"}) {
     const Outcome outcome = run_scan({command, "--help"});
     EXPECT_EQ(outcome.exit_code, 0) << command;
     EXPECT_NE(outcome.out.find("Example:\n  scan " + std::string(command)), std::string::npos)

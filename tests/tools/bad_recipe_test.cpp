@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// A recipe with a slip in it is refused at once, with the place and a hint, and no run folder is made.
+// A recipe with a slip in it is refused at once, with the place and a hint, and no run folder is
+// made.
 #include <gtest/gtest.h>
 
 #include "tests/tools/program.h"
@@ -25,7 +26,9 @@ struct Slip {
 };
 
 // How GoogleTest names a case in its messages.
-void PrintTo(const Slip& slip, std::ostream* out) { *out << slip.to; }
+void PrintTo(const Slip& slip, std::ostream* out) {
+  *out << slip.to;
+}
 
 class BadRecipe : public testing::TestWithParam<Slip> {};
 
@@ -48,24 +51,24 @@ TEST_P(BadRecipe, IsRefusedWithThePlace) {
 
 INSTANTIATE_TEST_SUITE_P(
     Slips, BadRecipe,
-    testing::Values(
-        Slip{"\"seed\"", "\"sede\"", "did you mean 'seed'"},
-        Slip{"radius_mm\": 25", "radius_inch\": 1", "radius"},
-        Slip{"radius_mm\": 25", "radius_mm\": -25", "must be positive"},
-        Slip{"radius_mm\": 25", "radius_mm\": \"25\"", "must be a number"},
-        Slip{"radius_mm\": 25", "radius_mm\": 25, \"radius_m\": 0.025", "two units"},
-        Slip{"{ \"sphere\": { \"radius_mm\": 25 } }", "\"brakcet\"", "did you mean 'bracket'"},
-        Slip{"\"shape\": { \"sphere\": { \"radius_mm\": 25 } }", "\"mesh\": \"gone.stl\", \"unit\": \"mm\"",
-             "gone.stl"},
-        Slip{"\"material\": \"clay\"", "\"material\": \"caly\"", "did you mean 'clay'"},
-        Slip{"phase_camera", "phase_camrea", "did you mean 'phase_camera'"},
-        Slip{"\"width_px\": 80", "\"width_px\": 0", "width_px"},
-        Slip{"\"width_px\": 80", "\"width_px\": 4.5", "whole number"},
-        Slip{"\"count\": 8", "\"count\": 0", "count"},
-        Slip{"\"depth\": 4", "\"depth\": 40", "depth"},
-        Slip{"\"method\": \"ssd\"", "\"method\": \"sdd\"", "did you mean 'ssd'"},
-        Slip{"\"libscan\": 1", "\"libscan\": 2", "version 1"},
-        Slip{"\"libscan\": 1,", "\"libscan\": 1", "not valid JSON"}));
+    testing::Values(Slip{"\"seed\"", "\"sede\"", "did you mean 'seed'"},
+                    Slip{"radius_mm\": 25", "radius_inch\": 1", "radius"},
+                    Slip{"radius_mm\": 25", "radius_mm\": -25", "must be positive"},
+                    Slip{"radius_mm\": 25", "radius_mm\": \"25\"", "must be a number"},
+                    Slip{"radius_mm\": 25", "radius_mm\": 25, \"radius_m\": 0.025", "two units"},
+                    Slip{"{ \"sphere\": { \"radius_mm\": 25 } }", "\"brakcet\"",
+                         "did you mean 'bracket'"},
+                    Slip{"\"shape\": { \"sphere\": { \"radius_mm\": 25 } }",
+                         "\"mesh\": \"gone.stl\", \"unit\": \"mm\"", "gone.stl"},
+                    Slip{"\"material\": \"clay\"", "\"material\": \"caly\"", "did you mean 'clay'"},
+                    Slip{"phase_camera", "phase_camrea", "did you mean 'phase_camera'"},
+                    Slip{"\"width_px\": 80", "\"width_px\": 0", "width_px"},
+                    Slip{"\"width_px\": 80", "\"width_px\": 4.5", "whole number"},
+                    Slip{"\"count\": 8", "\"count\": 0", "count"},
+                    Slip{"\"depth\": 4", "\"depth\": 40", "depth"},
+                    Slip{"\"method\": \"ssd\"", "\"method\": \"sdd\"", "did you mean 'ssd'"},
+                    Slip{"\"libscan\": 1", "\"libscan\": 2", "version 1"},
+                    Slip{"\"libscan\": 1,", "\"libscan\": 1", "not valid JSON"}));
 
 TEST(GoodRecipe, RunsAndRefusesToOverwrite) {
   const Folder folder;

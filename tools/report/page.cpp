@@ -33,11 +33,16 @@ pre { background: #f5f5f5; padding: 1rem; overflow-x: auto; font-size: .85rem; }
 std::string escaped(const std::string& text) {
   std::string safe;
   for (const char c : text) {
-    if (c == '<') safe += "&lt;";
-    else if (c == '>') safe += "&gt;";
-    else if (c == '&') safe += "&amp;";
-    else if (c == '"') safe += "&quot;";
-    else safe += c;
+    if (c == '<')
+      safe += "&lt;";
+    else if (c == '>')
+      safe += "&gt;";
+    else if (c == '&')
+      safe += "&amp;";
+    else if (c == '"')
+      safe += "&quot;";
+    else
+      safe += c;
   }
   return safe;
 }
@@ -73,16 +78,18 @@ std::string banner(const ordered_json& verdict) {
 std::string measurement_table(const ordered_json& verdict) {
   std::string html =
       "<h2>Measurements</h2><table><tr><th>figure</th><th class=\"number\">value</th>"
-      "<th class=\"number\">limit</th><th>verdict</th><th>over</th><th>reason of the limit</th></tr>";
+      "<th class=\"number\">limit</th><th>verdict</th><th>over</th><th>reason of the "
+      "limit</th></tr>";
   for (const auto& m : verdict.at("measurements")) {
     const std::string unit = m.value("unit", "");
     const bool limited = m.contains("limit") && m.at("limit").is_number();
-    html += "<tr>" + cell(m.value("name", "")) + cell(number_of(m.at("value"), unit), true) +
-            cell(limited ? m.value("relation", "") + " " + number_of(m.at("limit"), unit) : "", true) +
-            cell(limited ? (m.value("pass", false) ? "pass" : "FAIL") : "") +
-            cell(m.value("over", "") + " (" + std::to_string(m.value("count", 0ul)) + ")") +
-            cell(m.contains("reason") && m.at("reason").is_string() ? m.value("reason", "") : "") +
-            "</tr>";
+    html +=
+        "<tr>" + cell(m.value("name", "")) + cell(number_of(m.at("value"), unit), true) +
+        cell(limited ? m.value("relation", "") + " " + number_of(m.at("limit"), unit) : "", true) +
+        cell(limited ? (m.value("pass", false) ? "pass" : "FAIL") : "") +
+        cell(m.value("over", "") + " (" + std::to_string(m.value("count", 0ul)) + ")") +
+        cell(m.contains("reason") && m.at("reason").is_string() ? m.value("reason", "") : "") +
+        "</tr>";
   }
   return html + "</table>";
 }
@@ -90,7 +97,8 @@ std::string measurement_table(const ordered_json& verdict) {
 std::string deviation_section(const Report& report) {
   const double limit_m = deviation_limit_m(report.deviations_m);
   std::string html =
-      "<h2>Deviation from the truth</h2><p>Signed distance of each surface vertex: blue lies inside "
+      "<h2>Deviation from the truth</h2><p>Signed distance of each surface vertex: blue lies "
+      "inside "
       "the true surface, red outside. The scale holds 99 % of the vertices.</p>" +
       deviation_legend(limit_m) + "<div class=\"views\">";
   for (const View& view : six_views(report.surface, report.deviations_m, limit_m, 300))
@@ -108,7 +116,8 @@ std::string scan_table(const Report& report) {
   for (const auto& scan : report.simulation) {
     std::string misses;
     for (const auto& [reason, count] : scan.at("misses").items())
-      misses += (misses.empty() ? "" : ", ") + reason + ": " + std::to_string(count.get<std::size_t>());
+      misses +=
+          (misses.empty() ? "" : ", ") + reason + ": " + std::to_string(count.get<std::size_t>());
     html += "<tr>" + cell(scan.value("file", "")) +
             cell(std::to_string(scan.value("rays", 0ul)), true) +
             cell(std::to_string(scan.value("points", 0ul)), true) + cell(misses) + "</tr>";
@@ -143,7 +152,8 @@ std::string effect_table(const ordered_json& effects) {
 }
 
 std::string seconds_table(const ordered_json& seconds) {
-  std::string html = "\n<table id=\"seconds\"><tr><th>stage</th><th class=\"number\">seconds</th></tr>";
+  std::string html =
+      "\n<table id=\"seconds\"><tr><th>stage</th><th class=\"number\">seconds</th></tr>";
   for (const auto& [stage, value] : seconds.items()) {
     char text[32];
     std::snprintf(text, sizeof text, "%.2f", value.get<double>());
@@ -160,11 +170,12 @@ std::string details(const std::string& title, const ordered_json& json) {
 }  // namespace
 
 std::string report_page(const Report& report) {
-  std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-                     "<title>" + escaped(report.title) + "</title><style>" + style +
-                     "</style></head><body><h1>" + escaped(report.title) + "</h1><p>libscan " +
-                     version_text() + "</p>" + banner(report.verdict);
+  std::string html =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+      "<title>" +
+      escaped(report.title) + "</title><style>" + style + "</style></head><body><h1>" +
+      escaped(report.title) + "</h1><p>libscan " + version_text() + "</p>" + banner(report.verdict);
   if (!report.verdict.is_null()) html += measurement_table(report.verdict);
   if (!report.deviations_m.empty()) html += deviation_section(report);
   if (!report.simulation.is_null()) html += scan_table(report);

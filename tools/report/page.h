@@ -16,13 +16,13 @@ struct Report {
   std::string title;
   nlohmann::ordered_json recipe;
   nlohmann::ordered_json effects;
-  nlohmann::ordered_json simulation;      // per scan: rays, points, misses
+  nlohmann::ordered_json simulation;  // per scan: rays, points, misses
   nlohmann::ordered_json alignment;
   nlohmann::ordered_json reconstruction;
   nlohmann::ordered_json verdict;
-  nlohmann::ordered_json seconds;         // the only part that differs between equal runs
+  nlohmann::ordered_json seconds;  // the only part that differs between equal runs
   Mesh surface;
-  std::vector<double> deviations_m;       // one per vertex of the surface
+  std::vector<double> deviations_m;  // one per vertex of the surface
 };
 
 // Timings stand in one element, <table id="seconds">, on a line of its own.

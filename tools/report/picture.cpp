@@ -36,7 +36,8 @@ constexpr int rays_per_side = 2;  // of a pixel, against jagged edges
 
 // Weights of the triangle's corners at a point of its plane.
 Eigen::Vector3d barycentric(const Mesh& mesh, const Triangle& t, const Eigen::Vector3d& x) {
-  const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]],
+                        &c = mesh.vertices[t[2]];
   const Eigen::Vector3d area = (b - a).cross(c - a);
   const double v = (c - b).cross(x - b).dot(area), w = (a - c).cross(x - c).dot(area);
   const double whole = area.squaredNorm();
@@ -71,22 +72,25 @@ View paint(const Painter& painter, const Side& side, const Bounds& box, double p
   View view{side.name, Image<Colour>(size_px, size_px)};
   const double distance = box.diagonal().norm();
   const double sub = 1.0 / rays_per_side;
-  parallel_for(static_cast<std::size_t>(size_px), [&](std::size_t row) {
-    for (int column = 0; column < size_px; ++column) {
-      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-      for (int k = 0; k < rays_per_side * rays_per_side; ++k) {
-        const int across = k % rays_per_side, down = k / rays_per_side;
-        const double u = column + (across + 0.5) * sub - size_px / 2.0;
-        const double v = static_cast<double>(row) + (down + 0.5) * sub - size_px / 2.0;
-        const Eigen::Vector3d origin = box.center() + distance * side.towards_viewer +
-                                       pixel_m * (u * side.right - v * side.up);
-        sum += painter.shade(origin, -side.towards_viewer);
-      }
-      for (int channel = 0; channel < 3; ++channel)
-        view.image(column, static_cast<int>(row))[channel] =
-            static_cast<std::uint8_t>(std::lround(sum[channel] * sub * sub));
-    }
-  }, 8);
+  parallel_for(
+      static_cast<std::size_t>(size_px),
+      [&](std::size_t row) {
+        for (int column = 0; column < size_px; ++column) {
+          Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+          for (int k = 0; k < rays_per_side * rays_per_side; ++k) {
+            const int across = k % rays_per_side, down = k / rays_per_side;
+            const double u = column + (across + 0.5) * sub - size_px / 2.0;
+            const double v = static_cast<double>(row) + (down + 0.5) * sub - size_px / 2.0;
+            const Eigen::Vector3d origin = box.center() + distance * side.towards_viewer +
+                                           pixel_m * (u * side.right - v * side.up);
+            sum += painter.shade(origin, -side.towards_viewer);
+          }
+          for (int channel = 0; channel < 3; ++channel)
+            view.image(column, static_cast<int>(row))[channel] =
+                static_cast<std::uint8_t>(std::lround(sum[channel] * sub * sub));
+        }
+      },
+      8);
   return view;
 }
 
@@ -110,7 +114,8 @@ double deviation_limit_m(std::vector<double> sizes) {
   std::erase_if(sizes, [](double d) { return !std::isfinite(d); });
   if (sizes.empty()) return 1;
   for (double& size : sizes) size = std::abs(size);
-  const auto place = sizes.begin() + static_cast<long>(0.99 * static_cast<double>(sizes.size() - 1));
+  const auto place =
+      sizes.begin() + static_cast<long>(0.99 * static_cast<double>(sizes.size() - 1));
   std::nth_element(sizes.begin(), place, sizes.end());
   return std::max(*place, 1e-12);
 }
@@ -136,9 +141,8 @@ Image<Colour> disparity_sheet(const Image<float>& measured, const Image<float>& 
       const float d = measured(column, row), t = truth(column, row);
       sheet(column, row) = grey(d);
       sheet(truth.width + column, row) = grey(t);
-      sheet(2 * truth.width + column, row) = std::isfinite(d - t)
-                                                 ? diverging_colour((d - t) / error_limit_px)
-                                                 : unknown;
+      sheet(2 * truth.width + column, row) =
+          std::isfinite(d - t) ? diverging_colour((d - t) / error_limit_px) : unknown;
     }
   return sheet;
 }
@@ -149,7 +153,8 @@ Image<Colour> contact_sheet(const std::vector<View>& views) {
   const int rows = (static_cast<int>(views.size()) + per_row - 1) / per_row;
   Image<Colour> sheet(per_row * size, rows * size, background);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const int left = static_cast<int>(i) % per_row * size, top = static_cast<int>(i) / per_row * size;
+    const int left = static_cast<int>(i) % per_row * size,
+              top = static_cast<int>(i) / per_row * size;
     for (int row = 0; row < size; ++row)
       for (int column = 0; column < size; ++column)
         sheet(left + column, top + row) = views[i].image(column, row);

@@ -52,33 +52,41 @@ std::string deviation_histogram(const std::vector<double>& deviations_m, double 
     else
       ++outside;
   }
-  const double most = static_cast<double>(std::max<std::size_t>(
-      1, *std::max_element(counts.begin(), counts.end())));
+  const double most = static_cast<double>(
+      std::max<std::size_t>(1, *std::max_element(counts.begin(), counts.end())));
   const double floor = height - bottom, bar = (width - left - right) / bins;
   std::string svg = print(
       "<svg viewBox='0 0 %g %g' role='img' aria-label='Histogram of signed deviations' "
-      "font-size='12' font-family='sans-serif'>", width, height);
+      "font-size='12' font-family='sans-serif'>",
+      width, height);
   for (int i = 0; i < bins; ++i) {
-    const double size = (floor - top) * static_cast<double>(counts[static_cast<std::size_t>(i)]) / most;
-    svg += print("<rect x='%.2f' y='%.2f' width='%.2f' height='%.2f' fill='%s' stroke='#555' "
-                 "stroke-width='0.3'/>",
-                 left + i * bar, floor - size, bar, size,
-                 hex(diverging_colour(2 * (i + 0.5) / bins - 1)).c_str());
+    const double size =
+        (floor - top) * static_cast<double>(counts[static_cast<std::size_t>(i)]) / most;
+    svg += print(
+        "<rect x='%.2f' y='%.2f' width='%.2f' height='%.2f' fill='%s' stroke='#555' "
+        "stroke-width='0.3'/>",
+        left + i * bar, floor - size, bar, size,
+        hex(diverging_colour(2 * (i + 0.5) / bins - 1)).c_str());
   }
-  svg += print("<line x1='%g' y1='%g' x2='%g' y2='%g' stroke='#444'/>", left, floor, width - right, floor);
+  svg += print("<line x1='%g' y1='%g' x2='%g' y2='%g' stroke='#444'/>", left, floor, width - right,
+               floor);
   svg += axis(limit_m, floor);
-  const double share = deviations_m.empty()
-                           ? 0
-                           : 100.0 * static_cast<double>(outside) / static_cast<double>(deviations_m.size());
-  svg += print("<text x='%g' y='%g' text-anchor='middle'>signed deviation, %zu vertices; %.2f %% "
-               "beyond the scale</text></svg>", width / 2, height - 6, deviations_m.size(), share);
+  const double share = deviations_m.empty() ? 0
+                                            : 100.0 * static_cast<double>(outside) /
+                                                  static_cast<double>(deviations_m.size());
+  svg += print(
+      "<text x='%g' y='%g' text-anchor='middle'>signed deviation, %zu vertices; %.2f %% "
+      "beyond the scale</text></svg>",
+      width / 2, height - 6, deviations_m.size(), share);
   return svg;
 }
 
 std::string deviation_legend(double limit_m) {
   constexpr int steps = 60;
-  std::string svg = print("<svg viewBox='0 0 %g 44' role='img' aria-label='Colour scale' "
-                          "font-size='12' font-family='sans-serif'>", width);
+  std::string svg = print(
+      "<svg viewBox='0 0 %g 44' role='img' aria-label='Colour scale' "
+      "font-size='12' font-family='sans-serif'>",
+      width);
   for (int i = 0; i < steps; ++i)
     svg += print("<rect x='%.2f' y='2' width='%.2f' height='16' fill='%s'/>",
                  left + (width - left - right) * i / steps, (width - left - right) / steps + 0.5,

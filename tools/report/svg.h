@@ -8,8 +8,8 @@
 
 namespace scan {
 
-// Histogram of signed deviations in metres over [-limit_m, limit_m], coloured like the surface, with
-// the share of values outside the limits named; axes in a readable unit.
+// Histogram of signed deviations in metres over [-limit_m, limit_m], coloured like the surface,
+// with the share of values outside the limits named; axes in a readable unit.
 std::string deviation_histogram(const std::vector<double>& deviations_m, double limit_m);
 
 // The legend of the diverging scale, horizontal.
