@@ -217,7 +217,7 @@ std::optional<Hit> RayCaster::closest(const Eigen::Vector3d& origin,
   const auto hit = device_->closest(query);
   if (!hit) return std::nullopt;
   return Hit{hit->distance_m, origin + hit->distance_m * direction, hit->normal.normalized(),
-             hit->object};
+             hit->object, hit->triangle};
 }
 
 bool RayCaster::occluded(const Hit& hit, const Eigen::Vector3d& light) const {
