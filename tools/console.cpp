@@ -13,6 +13,7 @@
 
 #include "libscan/core/parallel.h"
 #include "libscan/core/units.h"
+#include "libscan/io/json_output.h"
 #include "tools/version.h"
 
 namespace scan {
@@ -86,7 +87,7 @@ void Console::finish(const std::string& command, const std::string& status,
   object["seconds"] = seconds;
   object["peak_mib"] = peak_memory_mib();
   object["threads"] = thread_count();
-  std::printf("%s\n", object.dump(2).c_str());
+  std::printf("%s", json_text(object).c_str());
 }
 
 std::string readable_length(double metres) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "libscan/core/cost.h"
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/shape_json.h"
@@ -19,16 +18,6 @@ ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
-ordered_json matrix(const Matrix6& m) {
-  ordered_json rows = ordered_json::array();
-  for (int row = 0; row < 6; ++row) {
-    ordered_json numbers = ordered_json::array();
-    for (int column = 0; column < 6; ++column) numbers.push_back(number(m(row, column)));
-    rows.push_back(numbers);
-  }
-  return rows;
-}
-
 ordered_json scan_pose_json(const std::string& file, const ScanPose& scan) {
   return {{"file", file},
           {"world_from_scan", to_json(scan.world_from_scan)},
@@ -36,7 +25,7 @@ ordered_json scan_pose_json(const std::string& file, const ScanPose& scan) {
           {"iterations", scan.iterations},
           {"rms_m", number(scan.rms_m)},
           {"inlier_fraction_of_source", number(scan.inlier_fraction_of_source)},
-                     {"agreement", number(scan.agreement)},
+          {"agreement", number(scan.agreement)},
           {"weak_directions", scan.weak_directions}};
 }
 
@@ -52,18 +41,6 @@ ordered_json scan_json(const std::string& file, const Scan& scan) {
           {"rays", rays},
           {"points", scan.cloud.size()},
           {"misses", ordered_json(scan.misses)}};
-}
-
-ordered_json icp_json(const IcpResult& result) {
-  return {{"target_from_source", to_json(result.target_from_source)},
-          {"stop", name_of(result.stop)},
-          {"iterations", result.iterations},
-          {"pairs", result.pairs},
-          {"inlier_fraction_of_source", number(result.inlier_fraction_of_source)},
-          {"rms_m", number(result.rms_m)},
-          {"information", matrix(result.information)},
-          {"weak_directions", result.weak_directions},
-          {"invalid_points", result.invalid_points}};
 }
 
 ordered_json alignment_json(std::span<const std::string> files, const MultiviewResult& result,
@@ -120,22 +97,6 @@ ordered_json verdict_json(const Verdict& verdict) {
   for (const Measurement& measurement : verdict.measurements)
     measurements.push_back(measurement_json(measurement));
   return {{"measurements", measurements}, {"pass", verdict.pass}};
-}
-
-ordered_json report_json(const CommandReport& report) {
-  ordered_json seconds = ordered_json::object();
-  double total = 0;
-  for (const auto& [stage, value] : report.seconds) {
-    seconds[stage] = number(value);
-    total += value;
-  }
-  seconds["total"] = number(total);
-  ordered_json object = {{"command", report.command}, {"version", report.version},
-                         {"status", report.status},   {"warnings", report.warnings},
-                         {"seconds", seconds},        {"peak_mib", number(peak_memory_mib())},
-                         {"threads", report.threads}};
-  if (report.seed) object["seed"] = *report.seed;
-  return object;
 }
 
 std::string json_text(const ordered_json& value) {

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // Results as JSON with stable keys. Numbers read back to the bit, what is not finite is null, poses
-// are 4x4. No object here holds seconds but `report_json`: the files of a run do not depend on the
-// machine.
+// are 4x4. No object here holds seconds: the files of a run do not depend on the machine.
 #pragma once
 
 #include <filesystem>
@@ -24,13 +23,9 @@ namespace scan {
 // count}.
 nlohmann::ordered_json scan_json(const std::string& file, const Scan& scan);
 
-// One pair: `target_from_source`, `stop`, `iterations`, `pairs`, `inlier_fraction_of_source`,
-// `rms_m`, `information`, `weak_directions`, `invalid_points`.
-nlohmann::ordered_json icp_json(const IcpResult& result);
-
 // alignment.json: `scans`: [{`file`, `world_from_scan`, `stop`, `iterations`, `rms_m`,
-// `inlier_fraction_of_source`, `weak_directions`}], `method`, `search`, `stop`, `rounds`,
-// `pairs_used`. Throws scan::Error (usage) unless there is one file for each scan.
+// `inlier_fraction_of_source`, `agreement`, `weak_directions`}], `method`, `search`, `stop`,
+// `rounds`, `pairs_used`. Throws scan::Error (usage) unless there is one file for each scan.
 nlohmann::ordered_json alignment_json(std::span<const std::string> files,
                                       const MultiviewResult& result, const IcpOptions& options);
 
@@ -44,20 +39,6 @@ nlohmann::ordered_json surface_json(const std::string& method, std::optional<int
 // and reason are null without a limit.
 nlohmann::ordered_json measurement_json(const Measurement& measurement);
 nlohmann::ordered_json verdict_json(const Verdict& verdict);  // `measurements`, `pass`
-
-// What every command says of itself, before its own keys.
-struct CommandReport {
-  std::string command;
-  std::string version;
-  std::string status = "ok";
-  std::vector<std::string> warnings;
-  std::vector<std::pair<std::string, double>> seconds;  // per stage; `total` is their sum
-  int threads = 0;
-  std::optional<std::uint64_t> seed;
-};
-
-// `command`, `version`, `status`, `warnings`, `seconds`, `peak_mib`, `threads` and `seed` if any.
-nlohmann::ordered_json report_json(const CommandReport& report);
 
 // Indented, a line feed at the end; bytes that are not UTF-8 (in file names) become U+FFFD.
 std::string json_text(const nlohmann::ordered_json& value);

@@ -68,16 +68,6 @@ TEST(JsonOutput, AlignmentIsWhatReadPosesReads) {
   error_of([&] { alignment_json(std::span(files).first(1), result, {}); }, Trouble::usage);
 }
 
-TEST(JsonOutput, PairsCarryTheirInformation) {
-  IcpResult result;
-  result.information(2, 3) = 7;
-  result.information(0, 0) = std::nan("");
-  const ordered_json object = icp_json(result);
-  EXPECT_EQ(object["information"][2][3], 7.0);
-  EXPECT_TRUE(object["information"][0][0].is_null());
-  EXPECT_EQ(object["stop"], "too few points");
-}
-
 TEST(JsonOutput, SurfacesTellTheirTopology) {
   SurfaceResult result;
   result.surface = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -99,16 +89,6 @@ TEST(JsonOutput, ScansCountTheirRays) {
   EXPECT_EQ(scan_json("scans/000.ply", scan)["misses"]["no signal"], 2);
   scan.grid = {2, 4};
   EXPECT_EQ(scan_json("scans/000.ply", scan)["rays"], 8);
-}
-
-TEST(JsonOutput, ReportsAddUpTheirSeconds) {
-  CommandReport report;
-  report.command = "align";
-  report.seconds = {{"read", 0.25}, {"align", 0.5}};
-  const ordered_json object = report_json(report);
-  EXPECT_EQ(object["seconds"]["total"], 0.75);
-  EXPECT_FALSE(object.contains("seed"));
-  EXPECT_GT(object["peak_mib"], 0);
 }
 
 TEST(JsonOutput, NumbersReadBackToTheBitAndNamesNeedNotBeUtf8) {

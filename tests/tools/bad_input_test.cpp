@@ -107,6 +107,13 @@ TEST(BadInput, MissingFilesAndFoldersAreNamed) {
   EXPECT_TRUE(files_below(folder.path()).empty());
 }
 
+TEST(BadInput, NamesThatAreNoTextAreReportedTooInJson) {
+  const Folder folder;
+  const Outcome outcome = run_scan({"info", (folder / "bad\xff.ply").string(), "--json"});
+  expect_failure(outcome, input, "no such file");
+  EXPECT_NE(outcome.out.find("no such file"), std::string::npos) << outcome.out;
+}
+
 TEST(BadInput, OnePointIsTooFew) {
   const Folder folder;
   const std::string one = (folder / "one.ply").string();
