@@ -7,6 +7,12 @@
 
 namespace scan::synth {
 
+DetectorEffects detector_effects(const EffectSet& effects) {
+  return {.shot_noise = effects.has(Effect::shot_noise),
+          .read_noise = effects.has(Effect::read_noise),
+          .quantisation = effects.has(Effect::quantisation)};
+}
+
 Sensor delivered_sensor(const Sensor& sensor, const DetectorEffects& effects) {
   if (effects.quantisation) return sensor;
   const int more_bits = std::min(6, 16 - sensor.bits);

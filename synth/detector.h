@@ -7,6 +7,7 @@
 
 #include "libscan/core/random.h"
 #include "libscan/core/raw_frames.h"
+#include "synth/effects/effect.h"
 
 namespace scan::synth {
 
@@ -16,6 +17,8 @@ struct DetectorEffects {
   bool read_noise = true;
   bool quantisation = true;  // off: see delivered_sensor
 };
+
+DetectorEffects detector_effects(const EffectSet& effects);
 
 // The sensor whose numbers read_pixel delivers, to be handed on in the frames' calibration. Without
 // quantisation the steps are 64 times finer (a pixel stays a whole number), or as much as 16 bits

@@ -222,16 +222,24 @@ std::optional<Hit> RayCaster::closest(const Eigen::Vector3d& origin,
 
 bool RayCaster::occluded(const Hit& hit, const Eigen::Vector3d& light) const {
   if (!(hit.normal.dot(light - hit.point) > 0)) return true;
-  // off the surface by more than the rounding of the hit and of its object's coordinates
+  return blocked(leave(hit, hit.normal), light);
+}
+
+Eigen::Vector3d RayCaster::leave(const Hit& hit, const Eigen::Vector3d& direction) const {
   const double size_m = hit.object >= 0 ? device_->size_m[hit.object] : 0;
   const double scale_m = hit.point.norm() + device_->origin.norm() + hit.distance_m + size_m;
   const double offset_m = 128 * std::numeric_limits<double>::epsilon() * scale_m;
-  const Eigen::Vector3d start = hit.point + offset_m * hit.normal;
-  const Eigen::Vector3d towards = light - start;
-  const double length_m = towards.norm();
-  if (!(length_m > offset_m)) return false;
+  return hit.point + std::copysign(offset_m, hit.normal.dot(direction)) * hit.normal;
+}
+
+bool RayCaster::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+  const double length_m = (to - from).norm();
+  // what stands within the rounding of the end is the end's own surface
+  const double margin_m = 128 * std::numeric_limits<double>::epsilon() *
+                          (from.norm() + to.norm() + device_->origin.norm());
+  if (!(length_m > margin_m)) return false;
   Query query{};
-  query.ray = {start - device_->origin, towards / length_m, 0, length_m - offset_m};
+  query.ray = {from - device_->origin, (to - from) / length_m, 0, length_m - margin_m};
   return device_->any(query);
 }
 

@@ -46,6 +46,13 @@ class RayCaster {
   // itself does not count. A light behind or in the plane of the surface is occluded.
   bool occluded(const Hit& hit, const Eigen::Vector3d& light) const;
 
+  // Where a ray that leaves a hit starts: off the surface, on the side that `direction` points to,
+  // by more than the rounding of the hit and of its object.
+  Eigen::Vector3d leave(const Hit& hit, const Eigen::Vector3d& direction) const;
+
+  // True if anything stands between two points that are off their surfaces (see leave).
+  bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
   const Scene& scene() const;
 
  private:

@@ -8,8 +8,8 @@ void check(const Scanner& scanner) {
   std::visit([](const auto& s) { check(s); }, scanner);
 }
 
-RawFrames render(const Scanner& scanner, const RayCaster& caster, const Pose& world_from_scanner,
-                 const RenderAddress& address, const DetectorEffects& effects) {
+Rendering render(const Scanner& scanner, const RayCaster& caster, const Pose& world_from_scanner,
+                 const RenderAddress& address, const EffectSet& effects) {
   return std::visit(
       [&](const auto& s) { return render(s, caster, world_from_scanner, address, effects); },
       scanner);

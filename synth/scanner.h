@@ -25,8 +25,8 @@ void check(const Scanner& scanner);
 
 // The raw frames of one scan. Chance is addressed by (seed, scan, ray): the same bytes for any
 // number of threads.
-RawFrames render(const Scanner& scanner, const RayCaster& caster, const Pose& world_from_scanner,
-                 const RenderAddress& address, const DetectorEffects& effects);
+Rendering render(const Scanner& scanner, const RayCaster& caster, const Pose& world_from_scanner,
+                 const RenderAddress& address, const EffectSet& effects);
 
 // Where the centre of each ray truly ends, indexed like the decoder's rays (see raw_frames.h).
 std::vector<RayTruth> true_rays(const Scanner& scanner, const RayCaster& caster,

@@ -17,8 +17,9 @@ std::string name_of(const char* kind, const std::string& name, std::size_t index
 }
 
 void check_material(const Material& material, const std::string& place) {
-  if (!(material.albedo >= 0 && material.albedo <= 1))
-    refuse(place + "/albedo is " + std::to_string(material.albedo) + ", must be from 0 to 1");
+  if (const auto* matt = std::get_if<Lambert>(&material.bsdf))
+    if (!(matt->albedo >= 0 && matt->albedo <= 1))
+      refuse(place + "/albedo is " + std::to_string(matt->albedo) + ", must be from 0 to 1");
   check(material.texture, place + "/texture");
 }
 
@@ -66,12 +67,45 @@ TrueSurface true_surface(const Scene& scene) {
   return surface;
 }
 
-double albedo_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world) {
+Bsdf bsdf_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world) {
   const Object& seen = scene.objects[object];
   const Material& material = scene.materials[seen.material];
+  Bsdf bsdf = material.bsdf;
+  if (std::holds_alternative<PlainTexture>(material.texture)) return bsdf;
   const Eigen::Vector3d x_in_object = seen.world_from_object.linear().transpose() *
                                       (x_in_world - seen.world_from_object.translation());
-  return material.albedo * texture_factor(material.texture, x_in_object);
+  const double factor = texture_factor(material.texture, x_in_object);
+  std::visit(
+      [&](auto& kind) {
+        if constexpr (requires { kind.albedo; }) kind.albedo *= factor;
+      },
+      bsdf);
+  return bsdf;
+}
+
+double albedo_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world) {
+  const Bsdf bsdf = bsdf_at(scene, object, x_in_world);
+  const auto* matt = std::get_if<Lambert>(&bsdf);
+  return matt ? matt->albedo : 0;
+}
+
+bool is_clear(const Material& material) {
+  const auto* glass = std::get_if<Dielectric>(&material.bsdf);
+  return glass && glass->roughness == 0 &&
+         !(material.interior && material.interior->scattering_per_m > 0);
+}
+
+Scene simplified(const Scene& scene, const EffectSet& effects) {
+  Scene kept = scene;
+  if (!effects.has(Effect::medium)) kept.medium.reset();
+  if (!effects.has(Effect::scene_lights)) kept.lights.clear();
+  if (!effects.has(Effect::refraction))
+    std::erase_if(kept.objects, [&](const Object& object) {
+      const Material& material = scene.materials[object.material];
+      return std::holds_alternative<Dielectric>(material.bsdf) &&
+             !(material.interior && material.interior->scattering_per_m > 0);
+    });
+  return kept;
 }
 
 }  // namespace scan::synth

@@ -12,6 +12,10 @@
 #include "libscan/core/mesh.h"
 #include "libscan/core/shape.h"
 #include "libscan/verify/truth.h"
+#include "synth/bsdf/bsdf.h"
+#include "synth/effects/effect.h"
+#include "synth/light.h"
+#include "synth/medium/medium.h"
 
 namespace scan::synth {
 
@@ -29,12 +33,18 @@ struct NoiseTexture {
 };
 using Texture = std::variant<PlainTexture, CheckerTexture, NoiseTexture>;
 
-// Lambert: radiance = albedo / pi * irradiance.
+// An object's surface and what it encloses. A texture multiplies the albedo of a Lambert,
+// Oren-Nayar or plastic surface. `interior` fills an object with a dielectric surface: absorbing
+// glass or, with scattering, a translucent body (index 1: no boundary to speak of).
 struct Material {
   std::string name;
-  double albedo = 0.5;
+  Bsdf bsdf = Lambert{};
   Texture texture;
+  std::optional<Medium> interior;
 };
+
+// Smooth, and light passes straight into it: not meant to be measured, so no truth either.
+bool is_clear(const Material& material);
 
 struct Object {
   std::string name;
@@ -46,6 +56,8 @@ struct Object {
 struct Scene {
   std::vector<Object> objects;
   std::vector<Material> materials;
+  std::vector<Light> lights;     // besides the device's own
+  std::optional<Medium> medium;  // that everything stands in: fog, dusty air
 };
 
 // Throws scan::Error (input) naming object and field.
@@ -53,8 +65,17 @@ void check(const Scene& scene);
 
 TrueSurface true_surface(const Scene& scene);  // in the world frame
 
-// Albedo at a point of an object (world frame), 0 to 1.
+// How the object's surface reflects at a point (world frame), its texture applied.
+Bsdf bsdf_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world);
+
+// Albedo of a Lambert surface at a point of an object (world frame), 0 to 1; 0 for other surfaces.
 double albedo_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world);
+
+// The scene as it is rendered with those effects: without refraction no object with a dielectric
+// surface and no scattering inside; without subsurface scattering translucent bodies are Lambert
+// surfaces of equal albedo; without medium or scene lights none of them. What is left out costs
+// nothing. Objects keep their order; `name`s tell who is who.
+Scene simplified(const Scene& scene, const EffectSet& effects);
 
 // Our own models, metres. bracket: a machined angle of 80 x 50 x 45 mm with a bore (radius 9 mm), a
 // fillet, a thin wall (1.5 mm) and sharp edges; genus 1 (the bore). bud: an organic form of blended

@@ -106,7 +106,7 @@ void check_settings(const Recipe& recipe, const std::string& place) {
     check(recipe.viewpoints);
     check(recipe.align.icp);
     check(recipe.reconstruct.ssd);
-    plan_effects(recipe.scanner, recipe.effects);
+    check(recipe.effects);
   } catch (const Error& error) {
     throw Error(Trouble::input, place + ": " + error.what(), error.hint());
   }

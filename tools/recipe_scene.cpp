@@ -63,7 +63,7 @@ synth::Texture read_texture(JsonReader reader) {
 
 synth::Material read_material(JsonReader reader, const std::string& name) {
   synth::Material material{.name = name};
-  material.albedo = reader.number("diffuse", material.albedo);
+  material.bsdf = synth::Lambert{reader.number("diffuse", synth::Lambert{}.albedo)};
   if (reader.has("texture")) material.texture = read_texture(reader.object("texture"));
   reader.finish();
   return material;
@@ -152,7 +152,7 @@ RecipeScene read_scene(JsonReader reader, const std::filesystem::path& folder) {
 ordered_json to_json(const RecipeScene& recipe) {
   ordered_json materials = ordered_json::object(), objects = ordered_json::array();
   for (const synth::Material& material : recipe.scene.materials) {
-    ordered_json entry = {{"diffuse", material.albedo}};
+    ordered_json entry = {{"diffuse", std::get<synth::Lambert>(material.bsdf).albedo}};
     if (auto texture = std::visit(TextureWriter{}, material.texture); !texture.is_null())
       entry["texture"] = std::move(texture);
     materials[material.name] = std::move(entry);

@@ -71,7 +71,7 @@ Recipe adjusted(Recipe recipe, const RunSettings& settings) {
   if (settings.seed >= 0) recipe.seed = static_cast<std::uint64_t>(settings.seed);
   if (!settings.effects.empty()) {
     recipe.effects = effect_choice(settings.effects);
-    synth::plan_effects(recipe.scanner, recipe.effects);  // refuses unknown names
+    check(recipe.effects);
   }
   return recipe;
 }

@@ -20,10 +20,12 @@ using nlohmann::ordered_json;
 ordered_json effects_json(const synth::EffectPlan& plan) {
   ordered_json list = ordered_json::array();
   for (const synth::EffectDecision& decision : plan)
-    list.push_back({{"effect", decision.effect},
+    list.push_back({{"effect", std::string(synth::name(decision.effect))},
                     {"decision", decision.on ? "on" : "off"},
                     {"reason", decision.reason},
-                    {"bound_m", decision.bound_m}});
+                    {"bound_m", decision.bound_m},
+                    {"bound_sigma", decision.bound_sigma},
+                    {"cost_s", decision.cost_s}});
   return list;
 }
 
@@ -40,9 +42,11 @@ void simulate_run(const std::filesystem::path& run, const Recipe& recipe,
   const Progress progress = console.progress();
   const Stopwatch watch;
   double acquire_seconds = 0;
-  const synth::RayCaster caster(recipe.scene.scene);
-  const synth::EffectPlan plan = synth::plan_effects(recipe.scanner, recipe.effects);
   const auto poses = synth::true_poses(recipe.viewpoints);
+  const synth::EffectPlan plan =
+      synth::plan_effects(recipe.scanner, recipe.scene.scene, poses, recipe.effects);
+  const synth::EffectSet effects = synth::effects_of(plan);
+  const synth::RayCaster caster(synth::simplified(recipe.scene.scene, effects));
   const auto guesses = synth::guessed_poses(recipe.viewpoints, recipe.seed);
   make_folder(run / "scans");
   make_folder(truth_path(run));
@@ -52,8 +56,8 @@ void simulate_run(const std::filesystem::path& run, const Recipe& recipe,
     progress("simulate", static_cast<double>(i) / static_cast<double>(poses.size()));
     const RawFrames frames =
         synth::render(recipe.scanner, caster, poses[i],
-                      {.seed = recipe.seed, .scan = static_cast<std::uint32_t>(i)},
-                      synth::detector_effects(plan));
+                      {.seed = recipe.seed, .scan = static_cast<std::uint32_t>(i)}, effects)
+            .frames;
     if (options.keep_raw) {
       make_folder(raw_path(run, i));
       write_raw_frames(raw_path(run, i), frames);

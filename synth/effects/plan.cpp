@@ -15,8 +15,8 @@
 namespace scan::synth {
 namespace {
 
-constexpr std::array<std::string_view, 3> effect_names = {"shot noise", "read noise",
-                                                          "quantisation"};
+constexpr std::array<Effect, 3> weighed = {Effect::shot_noise, Effect::read_noise,
+                                           Effect::quantisation};
 constexpr double negligible = 0.01;  // of the scanner's own sigma
 
 // Levenshtein's distance.
@@ -34,19 +34,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// "shot-noise" and "shot_noise" name "shot noise".
-std::string known_name(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == '-' || c == '_'; }, ' ');
-  if (std::count(effect_names.begin(), effect_names.end(), name) > 0) return name;
-  const auto nearest = *std::min_element(effect_names.begin(), effect_names.end(),
-                                         [&](std::string_view a, std::string_view b) {
-                                           return edit_distance(name, a) < edit_distance(name, b);
-                                         });
-  throw Error(
-      Trouble::usage,
-      "effects: '" + name + "' is unknown, not one of: shot noise, read noise, quantisation",
-      "did you mean '" + std::string(nearest) + "'?");
+Effect known_effect(const std::string& word) {
+  if (const auto effect = effect_named(word)) return *effect;
+  const auto effects = all_effects();
+  const auto nearest = *std::min_element(effects.begin(), effects.end(), [&](Effect a, Effect b) {
+    return edit_distance(word, name(a)) < edit_distance(word, name(b));
+  });
+  std::string known;
+  for (const Effect effect : effects)
+    known += (known.empty() ? "" : ", ") + std::string(name(effect));
+  throw Error(Trouble::usage, "effects: '" + word + "' is unknown, not one of: " + known,
+              "did you mean '" + std::string(name(nearest)) + "'?");
 }
 
 // Range error of one effect if it is left out: three sigma of the noises, and what rounding by half
@@ -97,8 +95,8 @@ std::string why(const EffectChoice& choice, const Weight& weight, bool on) {
   return (on ? "On, as named; " : "Off, as not named; ") + bound + ".";
 }
 
-bool is_on(const EffectChoice& choice, const std::vector<std::string>& named,
-           std::string_view effect, const Weight& weight) {
+bool is_on(const EffectChoice& choice, const EffectSet& named, Effect effect,
+           const Weight& weight) {
   switch (choice.kind) {
     case EffectChoice::Kind::automatic:
       return weight.share >= negligible;
@@ -109,34 +107,38 @@ bool is_on(const EffectChoice& choice, const std::vector<std::string>& named,
     case EffectChoice::Kind::named:
       break;
   }
-  return std::count(named.begin(), named.end(), effect) > 0;
+  return named.has(effect);
 }
 
 }  // namespace
 
-EffectPlan plan_effects(const Scanner& scanner, const EffectChoice& choice) {
-  check(scanner);
-  std::vector<std::string> named;
+void check(const EffectChoice& choice) {
   if (choice.kind == EffectChoice::Kind::named)
-    for (const std::string& name : choice.names) named.push_back(known_name(name));
+    for (const std::string& word : choice.names) known_effect(word);
+}
+
+EffectPlan plan_effects(const Scanner& scanner, const Scene& scene, std::span<const Pose>,
+                        const EffectChoice& choice) {
+  check(scanner);
+  check(scene);
+  EffectSet named;
+  if (choice.kind == EffectChoice::Kind::named)
+    for (const std::string& word : choice.names) named.set(known_effect(word));
   const std::vector<Sensitivity> points = sensitivities(scanner);
   EffectPlan plan;
-  for (std::size_t i = 0; i < effect_names.size(); ++i) {
+  for (std::size_t i = 0; i < weighed.size(); ++i) {
     const Weight weight = weigh(points, i);
-    const bool on = is_on(choice, named, effect_names[i], weight);
-    plan.push_back({std::string(effect_names[i]), on, why(choice, weight, on), weight.bound_m});
+    const bool on = is_on(choice, named, weighed[i], weight);
+    plan.push_back({weighed[i], on, why(choice, weight, on), weight.bound_m, weight.share, 0});
   }
+  plan.push_back({Effect::footprint, true, "On, as the recipe's sub-rays say.", 0, 0, 0});
   return plan;
 }
 
-DetectorEffects detector_effects(const EffectPlan& plan) {
-  const auto on = [&](std::string_view name) {
-    return std::any_of(plan.begin(), plan.end(),
-                       [&](const EffectDecision& d) { return d.effect == name && d.on; });
-  };
-  return {.shot_noise = on(effect_names[0]),
-          .read_noise = on(effect_names[1]),
-          .quantisation = on(effect_names[2])};
+EffectSet effects_of(const EffectPlan& plan) {
+  EffectSet effects;
+  for (const EffectDecision& decision : plan) effects.set(decision.effect, decision.on);
+  return effects;
 }
 
 }  // namespace scan::synth

@@ -3,19 +3,22 @@
 // Which effects a simulation includes, and why.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
-#include "synth/detector.h"
+#include "synth/effects/effect.h"
 #include "synth/scanner.h"
 
 namespace scan::synth {
 
 struct EffectDecision {
-  std::string effect;  // "shot noise", "read noise", "quantisation"
+  Effect effect = Effect::shot_noise;
   bool on = true;
-  std::string reason;  // one sentence
-  double bound_m = 0;  // of the ranging error if it is left out
+  std::string reason;      // one sentence
+  double bound_m = 0;      // of the ranging error if it is left out
+  double bound_sigma = 0;  // the same over the scanner's own sigma there
+  double cost_s = 0;       // measured or estimated, of one scan with it minus one without
 };
 
 using EffectPlan = std::vector<EffectDecision>;
@@ -26,11 +29,13 @@ struct EffectChoice {
   std::vector<std::string> names;
 };
 
-// The planner weighs each effect at the scanner's strongest and weakest working point (see
-// sensitivity.h) and leaves out what moves a range by less than 1 % of the scanner's own sigma at
-// both. Throws scan::Error: usage for an unknown effect, with the nearest known name as a hint;
-// input for a scanner that is not valid.
-EffectPlan plan_effects(const Scanner& scanner, const EffectChoice& choice);
-DetectorEffects detector_effects(const EffectPlan& plan);
+// Throws scan::Error (usage) for an unknown effect, with the nearest known name as a hint.
+void check(const EffectChoice& choice);
+
+// The planner weighs each effect for this scanner, scene and these viewpoints and leaves out what
+// moves no range by more than a small share of the scanner's own sigma. Throws what check throws.
+EffectPlan plan_effects(const Scanner& scanner, const Scene& scene,
+                        std::span<const Pose> world_from_scanner, const EffectChoice& choice);
+EffectSet effects_of(const EffectPlan& plan);  // those that are on
 
 }  // namespace scan::synth

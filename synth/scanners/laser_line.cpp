@@ -66,15 +66,18 @@ void check(const LaserLine& s) {
   require_size("laser_line/images", 1.0 * s.steps * s.camera.width_px * s.camera.height_px);
 }
 
-RawFrames render(const LaserLine& scanner, const RayCaster& caster, const Pose& world_from_scanner,
-                 const RenderAddress& address, const DetectorEffects& effects) {
-  check(scanner);
+Rendering render(const LaserLine& device, const RayCaster& caster, const Pose& world_from_scanner,
+                 const RenderAddress& address, const EffectSet& effects) {
+  check(device);
+  LaserLine scanner = device;
+  if (!effects.has(Effect::footprint)) scanner.sub_rays = 1;
+  const DetectorEffects reading = detector_effects(effects);
   const LaserSheet sheet = laser_sheet(scanner);
   StripeImages frames;
   frames.calibration = {.camera = scanner.camera,
                         .plane_normal = sheet.normal,
                         .plane_offset_m = sheet.offset_m,
-                        .sensor = delivered_sensor(scanner.sensor, effects),
+                        .sensor = delivered_sensor(scanner.sensor, reading),
                         .min_range_m = scanner.min_range_m,
                         .max_range_m = scanner.max_range_m};
   frames.scanner_from_camera = scanner_from_camera(scanner);
@@ -84,10 +87,10 @@ RawFrames render(const LaserLine& scanner, const RayCaster& caster, const Pose& 
       [&](std::size_t step) {
         const LaserView view{scanner, sheet, caster,
                              world_from_scanner * frames.scanner_from_camera[step]};
-        frames.images[step] = render_step(view, static_cast<int>(step), address, effects);
+        frames.images[step] = render_step(view, static_cast<int>(step), address, reading);
       },
       1);
-  return frames;
+  return {.frames = std::move(frames), .statistics = {}};
 }
 
 }  // namespace scan::synth

@@ -8,7 +8,7 @@
 #include "libscan/core/raw_frames.h"
 #include "synth/detector.h"
 #include "synth/ray_caster.h"
-#include "synth/scanners/render_address.h"
+#include "synth/scanners/rendering.h"
 
 namespace scan::synth {
 
@@ -46,8 +46,8 @@ struct LaserLine {
 // Throws scan::Error (input) naming field, value and limit.
 void check(const LaserLine& scanner);
 // StripeImages.
-RawFrames render(const LaserLine& scanner, const RayCaster& caster, const Pose& world_from_scanner,
-                 const RenderAddress& address, const DetectorEffects& effects);
+Rendering render(const LaserLine& scanner, const RayCaster& caster, const Pose& world_from_scanner,
+                 const RenderAddress& address, const EffectSet& effects);
 // The true ray of (row, step): where the middle of the light plane meets the surface, lit and seen,
 // in that camera row, that is on the curve of views through the centres of its pixels (with
 // distortion no plane); of several such points the one nearest to the camera. Normals face the

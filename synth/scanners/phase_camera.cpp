@@ -83,13 +83,16 @@ PixelPhasors expected_phasors(const PhaseCamera& s, const RayCaster& caster,
   return pixel;
 }
 
-RawFrames render(const PhaseCamera& s, const RayCaster& caster, const Pose& world_from_scanner,
-                 const RenderAddress& address, const DetectorEffects& effects) {
-  check(s);
+Rendering render(const PhaseCamera& device, const RayCaster& caster, const Pose& world_from_scanner,
+                 const RenderAddress& address, const EffectSet& effects) {
+  check(device);
+  PhaseCamera s = device;
+  if (!effects.has(Effect::footprint)) s.sub_rays = 1;
+  const DetectorEffects reading = detector_effects(effects);
   const int width = s.camera.width_px, height = s.camera.height_px;
   PhaseTaps frames{.calibration = {.camera = s.camera,
                                    .frequencies_hz = s.frequencies_hz,
-                                   .sensor = delivered_sensor(s.sensor, effects),
+                                   .sensor = delivered_sensor(s.sensor, reading),
                                    .max_range_m = s.max_range_m},
                    .taps = {}};
   const Image<std::uint16_t> blank(width, height);
@@ -102,10 +105,10 @@ RawFrames render(const PhaseCamera& s, const RayCaster& caster, const Pose& worl
       for (int k = 0; k < 4; ++k) {
         const double mean = light.constant_e + modulation(light.amplitude_e[f], k);
         RandomStream random(address.seed, address.scan, (4 * f + k) * pixels + i);
-        frames.taps[f][k].pixels[i] = read_pixel(s.sensor, effects, std::max(0.0, mean), random);
+        frames.taps[f][k].pixels[i] = read_pixel(s.sensor, reading, std::max(0.0, mean), random);
       }
   });
-  return frames;
+  return {.frames = std::move(frames), .statistics = {}};
 }
 
 std::vector<RayTruth> true_rays(const PhaseCamera& scanner, const RayCaster& caster,

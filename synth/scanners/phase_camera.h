@@ -9,7 +9,7 @@
 #include "libscan/core/raw_frames.h"
 #include "synth/detector.h"
 #include "synth/ray_caster.h"
-#include "synth/scanners/render_address.h"
+#include "synth/scanners/rendering.h"
 
 namespace scan::synth {
 
@@ -44,9 +44,9 @@ struct PixelPhasors {
 PixelPhasors expected_phasors(const PhaseCamera& scanner, const RayCaster& caster,
                               const Pose& world_from_scanner, int column, int row);
 
-RawFrames render(const PhaseCamera& scanner, const RayCaster& caster,
+Rendering render(const PhaseCamera& scanner, const RayCaster& caster,
                  const Pose& world_from_scanner, const RenderAddress& address,
-                 const DetectorEffects& effects);
+                 const EffectSet& effects);
 // Through the pixels' centres.
 std::vector<RayTruth> true_rays(const PhaseCamera& scanner, const RayCaster& caster,
                                 const Pose& world_from_scanner);

@@ -191,13 +191,16 @@ std::vector<double> expected_waveform(const PulsedLidar& s, const RayCaster& cas
   return samples;
 }
 
-RawFrames render(const PulsedLidar& s, const RayCaster& caster, const Pose& world_from_scanner,
-                 const RenderAddress& address, const DetectorEffects& effects) {
-  check(s);
+Rendering render(const PulsedLidar& device, const RayCaster& caster, const Pose& world_from_scanner,
+                 const RenderAddress& address, const EffectSet& effects) {
+  check(device);
+  PulsedLidar s = device;
+  if (!effects.has(Effect::footprint)) s.sub_rays = 1;
+  const DetectorEffects reading = detector_effects(effects);
   Waveforms frames{.calibration = {.sample_interval_s = s.sample_interval_s,
                                    .window_start_s = window_start_s(s),
                                    .pulse_sigma_s = recorded_sigma_s(s),
-                                   .sensor = delivered_sensor(s.sensor, effects)},
+                                   .sensor = delivered_sensor(s.sensor, reading)},
                    .grid = grid_of(s),
                    .directions = ray_directions(s),
                    .samples_per_ray = static_cast<std::uint32_t>(samples_in_window(s)),
@@ -208,10 +211,10 @@ RawFrames render(const PulsedLidar& s, const RayCaster& caster, const Pose& worl
     const std::size_t first = ray * frames.samples_per_ray;
     for (std::size_t i = 0; i < mean.size(); ++i) {
       RandomStream random(address.seed, address.scan, first + i);
-      frames.samples[first + i] = read_pixel(s.sensor, effects, mean[i], random);
+      frames.samples[first + i] = read_pixel(s.sensor, reading, mean[i], random);
     }
   });
-  return frames;
+  return {.frames = std::move(frames), .statistics = {}};
 }
 
 std::vector<RayTruth> true_rays(const PulsedLidar& scanner, const RayCaster& caster,

@@ -9,7 +9,7 @@
 #include "libscan/core/raw_frames.h"
 #include "synth/detector.h"
 #include "synth/ray_caster.h"
-#include "synth/scanners/render_address.h"
+#include "synth/scanners/rendering.h"
 
 namespace scan::synth {
 
@@ -77,9 +77,9 @@ std::vector<double> expected_waveform(const PulsedLidar& scanner, const RayCaste
                                       const Pose& world_from_scanner,
                                       const Eigen::Vector3d& direction);
 
-RawFrames render(const PulsedLidar& scanner, const RayCaster& caster,
+Rendering render(const PulsedLidar& scanner, const RayCaster& caster,
                  const Pose& world_from_scanner, const RenderAddress& address,
-                 const DetectorEffects& effects);
+                 const EffectSet& effects);
 // Along the beams' centres.
 std::vector<RayTruth> true_rays(const PulsedLidar& scanner, const RayCaster& caster,
                                 const Pose& world_from_scanner);

@@ -107,15 +107,19 @@ double expected_electrons(const StereoPair& s, const RayCaster& caster,
   return sum / (s.sub_rays * s.sub_rays);
 }
 
-RawFrames render(const StereoPair& scanner, const RayCaster& caster, const Pose& world_from_scanner,
-                 const RenderAddress& address, const DetectorEffects& effects) {
-  check(scanner);
+Rendering render(const StereoPair& device, const RayCaster& caster, const Pose& world_from_scanner,
+                 const RenderAddress& address, const EffectSet& effects) {
+  check(device);
+  StereoPair scanner = device;
+  if (!effects.has(Effect::footprint)) scanner.sub_rays = 1;
   const auto side = [&](StereoSide which) {
-    return render_side(scanner, caster, world_from_scanner, which, address, effects);
+    return render_side(scanner, caster, world_from_scanner, which, address,
+                       detector_effects(effects));
   };
-  return ImagePair{.calibration = scanner.calibration,
-                   .left = side(StereoSide::left),
-                   .right = side(StereoSide::right)};
+  return {.frames = ImagePair{.calibration = scanner.calibration,
+                              .left = side(StereoSide::left),
+                              .right = side(StereoSide::right)},
+          .statistics = {}};
 }
 
 std::vector<RayTruth> true_rays(const StereoPair& scanner, const RayCaster& caster,

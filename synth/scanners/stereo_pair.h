@@ -8,7 +8,7 @@
 #include "libscan/core/raw_frames.h"
 #include "synth/detector.h"
 #include "synth/ray_caster.h"
-#include "synth/scanners/render_address.h"
+#include "synth/scanners/rendering.h"
 
 namespace scan::synth {
 
@@ -38,8 +38,8 @@ void check(const StereoPair& scanner);
 double expected_electrons(const StereoPair& scanner, const RayCaster& caster,
                           const Pose& world_from_scanner, StereoSide side, int column, int row);
 
-RawFrames render(const StereoPair& scanner, const RayCaster& caster, const Pose& world_from_scanner,
-                 const RenderAddress& address, const DetectorEffects& effects);
+Rendering render(const StereoPair& scanner, const RayCaster& caster, const Pose& world_from_scanner,
+                 const RenderAddress& address, const EffectSet& effects);
 // Through the centres of the left pixels.
 std::vector<RayTruth> true_rays(const StereoPair& scanner, const RayCaster& caster,
                                 const Pose& world_from_scanner);

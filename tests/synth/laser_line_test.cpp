@@ -64,7 +64,7 @@ TEST(LaserStripe, HasItsPeakElectronsOnAWhiteTargetAtTheFocus) {
         << tilt;
   }
   Scene grey = white_scene({plane_at(z)});
-  grey.materials[0].albedo = 0.25;
+  grey.materials[0].bsdf = Lambert{0.25};
   EXPECT_NEAR(Bench(s, grey).electrons(79.5, 59.5), s.peak_electrons / 4, 1e-9 * s.peak_electrons);
 }
 
@@ -117,7 +117,7 @@ TEST(LaserImages, ShowTheStripeWhereItIs) {
   s.peak_electrons = 60000;
   const double z = 0.2;
   const RayCaster caster(white_scene({plane_at(z)}));
-  const RawFrames frames = render(s, caster, Pose::Identity(), {}, noise_free);
+  const RawFrames frames = render(s, caster, Pose::Identity(), {}, noise_free).frames;
   const auto& stripe = std::get<StripeImages>(frames);
   ASSERT_EQ(stripe.images.size(), 1u);
   const double expected_px = 79.5 + 300 * (s.baseline_m - z * std::tan(theta)) / z;
@@ -209,7 +209,7 @@ TEST(LaserImages, AreTheSameOnAnyNumberOfThreads) {
   const RayCaster caster(white_scene({sphere_at({0, 0, 0.18}, 0.03), plane_at(0.25)}));
   expect_same_for_any_thread_count([&] {
     std::vector<std::uint16_t> all;
-    const RawFrames frames = render(s, caster, Pose::Identity(), {3, 1}, {});
+    const RawFrames frames = render(s, caster, Pose::Identity(), {3, 1}, sensor_effects).frames;
     for (const auto& image : std::get<StripeImages>(frames).images)
       all.insert(all.end(), image.pixels.begin(), image.pixels.end());
     for (const RayTruth& ray : true_rays(s, caster, Pose::Identity()))
@@ -224,7 +224,8 @@ TEST(LaserImages, HaveReadNoiseInTheDark) {
   s.steps = 2;
   s.sensor = {.gain_e_per_dn = 2, .offset_dn = 100, .read_noise_e = 10, .bits = 12};
   const RawFrames frames =
-      render(s, RayCaster(white_scene({plane_at(0.2)})), Pose::Identity(), {}, {});
+      render(s, RayCaster(white_scene({plane_at(0.2)})), Pose::Identity(), {}, sensor_effects)
+          .frames;
   const auto& images = std::get<StripeImages>(frames).images;
   double sum = 0, squares = 0;
   for (const auto& image : images)
@@ -250,7 +251,8 @@ TEST(LaserImages, AreTheSameFarFromTheOrigin) {
     Scene scene = white_scene({sphere_at({0, 0, 0.1875}, 0.03125), plane_at(0.25)});
     for (Object& object : scene.objects) object.world_from_object.translation() += offset;
     const RawFrames frames =
-        render(s, RayCaster(scene), make_pose(Eigen::Matrix3d::Identity(), offset), {}, noise_free);
+        render(s, RayCaster(scene), make_pose(Eigen::Matrix3d::Identity(), offset), {}, noise_free)
+            .frames;
     return std::get<StripeImages>(frames).images[0].pixels;
   };
   const auto near = image_at(0), far = image_at(0x1p20);

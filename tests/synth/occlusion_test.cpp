@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "tests/synth/ray_scenes.h"
 #include "synth/ray_caster.h"
+#include "tests/synth/ray_scenes.h"
 
 namespace scan::synth {
 namespace {

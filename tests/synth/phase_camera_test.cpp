@@ -30,9 +30,10 @@ PixelPhasors light_at(const PhaseCamera& camera, const Scene& scene, int column,
   return expected_phasors(camera, RayCaster(scene), Pose::Identity(), column, row);
 }
 
-PhaseTaps taps_of(const PhaseCamera& camera, const Scene& scene, const DetectorEffects& effects,
+PhaseTaps taps_of(const PhaseCamera& camera, const Scene& scene, const EffectSet& effects,
                   const RenderAddress& address = {}) {
-  return std::get<PhaseTaps>(render(camera, RayCaster(scene), Pose::Identity(), address, effects));
+  return std::get<PhaseTaps>(
+      render(camera, RayCaster(scene), Pose::Identity(), address, effects).frames);
 }
 
 // phi = 4 pi f d / c of physics 7.5.

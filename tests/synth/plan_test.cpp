@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "libscan/core/error.h"
+#include "synth/detector.h"
 #include "synth/effects/sensitivity.h"
 
 namespace scan::synth {
@@ -34,14 +35,14 @@ std::vector<Scanner> every_scanner() {
 
 const EffectDecision& named(const EffectPlan& plan, const std::string& effect) {
   for (const EffectDecision& decision : plan)
-    if (decision.effect == effect) return decision;
+    if (name(decision.effect) == effect) return decision;
   throw std::out_of_range(effect);
 }
 
 TEST(EffectPlan, DecidesEachEffectForEachScannerWithAReason) {
   for (const Scanner& scanner : every_scanner()) {
-    const EffectPlan plan = plan_effects(scanner, {});
-    ASSERT_EQ(plan.size(), 3u);
+    const EffectPlan plan = plan_effects(scanner, Scene{}, {}, {});
+    ASSERT_EQ(plan.size(), 4u);
     for (const EffectDecision& decision : plan) {
       EXPECT_GE(decision.bound_m, 0);
       EXPECT_TRUE(std::isfinite(decision.bound_m));
@@ -54,15 +55,15 @@ TEST(EffectPlan, DecidesEachEffectForEachScannerWithAReason) {
 
 TEST(EffectPlan, LeavesOutWhatIsBelowAPercentOfSigma) {
   LaserLine scanner = laser();
-  EXPECT_TRUE(named(plan_effects(scanner, {}), "read noise").on);
+  EXPECT_TRUE(named(plan_effects(scanner, Scene{}, {}, {}), "read noise").on);
   scanner.sensor.read_noise_e = 0;
-  const EffectPlan without = plan_effects(scanner, {});
+  const EffectPlan without = plan_effects(scanner, Scene{}, {}, {});
   EXPECT_FALSE(named(without, "read noise").on);
   EXPECT_EQ(named(without, "read noise").bound_m, 0);
   EXPECT_NE(named(without, "read noise").reason.find("Off"), std::string::npos);
   scanner.sensor.gain_e_per_dn = 1e-3;
-  EXPECT_FALSE(named(plan_effects(scanner, {}), "quantisation").on);
-  EXPECT_FALSE(detector_effects(plan_effects(scanner, {})).quantisation);
+  EXPECT_FALSE(named(plan_effects(scanner, Scene{}, {}, {}), "quantisation").on);
+  EXPECT_FALSE(detector_effects(effects_of(plan_effects(scanner, Scene{}, {}, {}))).quantisation);
 }
 
 // Just on either side of the limit, by the plan's own figures.
@@ -80,20 +81,25 @@ TEST(EffectPlan, SwitchesAtTheLimitItStates) {
   LaserLine scanner = laser();
   for (double noise_e = 1e-3; noise_e < 100; noise_e *= 1.3) {
     scanner.sensor.read_noise_e = noise_e;
-    EXPECT_EQ(named(plan_effects(scanner, {}), "read noise").on, share(scanner) >= 0.01) << noise_e;
+    EXPECT_EQ(named(plan_effects(scanner, Scene{}, {}, {}), "read noise").on,
+              share(scanner) >= 0.01)
+        << noise_e;
   }
 }
 
 TEST(EffectPlan, FollowsAnExplicitChoice) {
   using Kind = EffectChoice::Kind;
   const LaserLine scanner = laser();
-  for (const auto& decision : plan_effects(scanner, {Kind::all, {}})) EXPECT_TRUE(decision.on);
-  for (const auto& decision : plan_effects(scanner, {Kind::none, {}})) EXPECT_FALSE(decision.on);
-  const EffectPlan plan = plan_effects(scanner, {Kind::named, {"read-noise", "quantisation"}});
+  for (const auto& decision : plan_effects(scanner, Scene{}, {}, {Kind::all, {}}))
+    EXPECT_TRUE(decision.on);
+  for (const auto& decision : plan_effects(scanner, Scene{}, {}, {Kind::none, {}}))
+    EXPECT_EQ(decision.on, decision.effect == Effect::footprint);
+  const EffectPlan plan =
+      plan_effects(scanner, Scene{}, {}, {Kind::named, {"read-noise", "quantisation"}});
   EXPECT_FALSE(named(plan, "shot noise").on);
   EXPECT_TRUE(named(plan, "read noise").on);
   EXPECT_TRUE(named(plan, "quantisation").on);
-  const DetectorEffects effects = detector_effects(plan);
+  const DetectorEffects effects = detector_effects(effects_of(plan));
   EXPECT_FALSE(effects.shot_noise);
   EXPECT_TRUE(effects.read_noise);
   EXPECT_TRUE(effects.quantisation);
@@ -101,7 +107,7 @@ TEST(EffectPlan, FollowsAnExplicitChoice) {
 
 TEST(EffectPlan, NamesTheNearestKnownEffect) {
   try {
-    plan_effects(laser(), {EffectChoice::Kind::named, {"shot nose"}});
+    plan_effects(laser(), Scene{}, {}, {EffectChoice::Kind::named, {"shot nose"}});
     FAIL() << "an unknown name must be refused";
   } catch (const Error& error) {
     EXPECT_EQ(error.trouble(), Trouble::usage);

@@ -57,15 +57,16 @@ TEST(PulsedLidar, WidensThePulseByItsInterval) {
   lidar.ambient_electrons = 0;
   const Moments m = moments_of(lidar, waveform(lidar, scene_of(plane_at(8), 1)));
   EXPECT_NEAR(m.variance_s2, 1.5e-9 * 1.5e-9 + 1e-18 / 12, 1e-27);
-  const auto frames =
-      std::get<Waveforms>(render(lidar, RayCaster(Scene{}), Pose::Identity(), {}, noise_free));
+  const auto frames = std::get<Waveforms>(
+      render(lidar, RayCaster(Scene{}), Pose::Identity(), {}, noise_free).frames);
   EXPECT_NEAR(frames.calibration.pulse_sigma_s, std::sqrt(m.variance_s2), 1e-18);
 }
 
 TEST(PulsedLidar, OpensItsWindowFourSigmasBeyondTheRangeLimits) {
   const PulsedLidar lidar = small_lidar();
   const RayCaster nothing(Scene{});
-  const auto frames = std::get<Waveforms>(render(lidar, nothing, Pose::Identity(), {}, noise_free));
+  const auto frames =
+      std::get<Waveforms>(render(lidar, nothing, Pose::Identity(), {}, noise_free).frames);
   const WaveformCalibration& calibration = frames.calibration;
   const double last_s =
       calibration.window_start_s + (frames.samples_per_ray - 1) * calibration.sample_interval_s;
@@ -137,8 +138,8 @@ TEST(PulsedLidar, ReadsNoiseInEverySample) {
   PulsedLidar lidar = small_lidar();
   lidar.sensor.read_noise_e = 2;
   lidar.sensor.offset_dn = 100;
-  const auto frames =
-      std::get<Waveforms>(render(lidar, RayCaster(Scene{}), Pose::Identity(), {}, {}));
+  const auto frames = std::get<Waveforms>(
+      render(lidar, RayCaster(Scene{}), Pose::Identity(), {}, sensor_effects).frames);
   const auto n = static_cast<double>(frames.samples.size());
   double sum = 0, sum2 = 0;
   for (const std::uint16_t dn : frames.samples) {
@@ -158,8 +159,9 @@ TEST(PulsedLidar, RendersTheSameBytesForAnyThreadCount) {
   lidar.sensor.read_noise_e = 3;
   const Scene scene = scene_of(sphere_at({0, 0, 8}, 1), 0.6);
   expect_same_for_any_thread_count([&] {
-    return std::get<Waveforms>(
-               render(lidar, RayCaster(scene), Pose::Identity(), {.seed = 3, .scan = 1}, {}))
+    return std::get<Waveforms>(render(lidar, RayCaster(scene), Pose::Identity(),
+                                      {.seed = 3, .scan = 1}, sensor_effects)
+                                   .frames)
         .samples;
   });
 }

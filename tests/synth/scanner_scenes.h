@@ -13,11 +13,12 @@
 
 namespace scan::synth {
 
-inline constexpr DetectorEffects noise_free = {
-    .shot_noise = false, .read_noise = false, .quantisation = true};
+inline const EffectSet noise_free = {Effect::quantisation, Effect::footprint};
+inline const EffectSet sensor_effects = {Effect::shot_noise, Effect::read_noise,
+                                         Effect::quantisation, Effect::footprint};
 
 inline Material plain(double albedo) {
-  return {.name = "plain", .albedo = albedo, .texture = {}};
+  return {.name = "plain", .bsdf = Lambert{albedo}, .texture = {}};
 }
 
 // A half-space whose surface meets the z axis at z_m. It faces a scanner at the origin that looks

@@ -18,7 +18,7 @@ namespace {
 
 Scene one_object(Texture texture = PlainTexture{}) {
   Scene scene;
-  scene.materials.push_back({"clay", 0.6, texture});
+  scene.materials.push_back({.name = "clay", .bsdf = Lambert{0.6}, .texture = texture});
   scene.objects.push_back({"ball", Pose::Identity(), Shape{SphereShape{0.1}}, 0});
   return scene;
 }
@@ -35,7 +35,7 @@ std::string complaint_of(const Scene& scene) {
 TEST(Scene, NamesWhatIsWrong) {
   EXPECT_EQ(complaint_of(one_object()), "");
   Scene scene = one_object();
-  scene.materials[0].albedo = 1.5;
+  scene.materials[0].bsdf = Lambert{1.5};
   EXPECT_NE(complaint_of(scene).find("materials/clay/albedo is 1.5"), std::string::npos);
   scene = one_object(CheckerTexture{-1, 0.5});
   EXPECT_NE(complaint_of(scene).find("clay/texture/period_m"), std::string::npos);

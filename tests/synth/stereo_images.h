@@ -30,13 +30,13 @@ inline double depth_of(double disparity_px) {
 }
 
 inline Material noisy(double period_m, int octaves) {
-  return {.name = "noise", .albedo = 0.8, .texture = NoiseTexture{period_m, octaves, 0.8}};
+  return {.name = "noise", .bsdf = Lambert{0.8}, .texture = NoiseTexture{period_m, octaves, 0.8}};
 }
 
 inline ImagePair images(const StereoPair& pair, const Scene& scene,
-                        const RenderAddress& address = {},
-                        const DetectorEffects& effects = noise_free) {
-  return std::get<ImagePair>(render(pair, RayCaster(scene), Pose::Identity(), address, effects));
+                        const RenderAddress& address = {}, const EffectSet& effects = noise_free) {
+  return std::get<ImagePair>(
+      render(pair, RayCaster(scene), Pose::Identity(), address, effects).frames);
 }
 
 // The mean electrons of one camera's image, before the detector.

@@ -28,9 +28,9 @@ Scene facing(double z_m) {
 }
 
 template <class Device>
-Scan scan_of(const Device& device, const Scene& scene, const DetectorEffects& effects = {}) {
+Scan scan_of(const Device& device, const Scene& scene, const EffectSet& effects = sensor_effects) {
   return acquire(
-      render(device, RayCaster(scene), Pose::Identity(), {.seed = 3, .scan = 0}, effects));
+      render(device, RayCaster(scene), Pose::Identity(), {.seed = 3, .scan = 0}, effects).frames);
 }
 
 std::size_t missed(const Scan& scan, std::string_view why) {
@@ -111,7 +111,8 @@ TEST(ImageSize, MayBeOnePixelOrOneRow) {
                 .cy_px = (height - 1) / 2.0};
     s.frequencies_hz = {80e6};
     s.max_range_m = 1.8;
-    const RawFrames frames = render(s, RayCaster(facing(1)), Pose::Identity(), {}, no_effects);
+    const RawFrames frames =
+        render(s, RayCaster(facing(1)), Pose::Identity(), {}, no_effects).frames;
     const Scan scan = acquire_phase(std::get<PhaseTaps>(frames));
     EXPECT_EQ(scan.cloud.size(), static_cast<std::size_t>(width) * height);
     expect_complete(scan, static_cast<std::size_t>(width) * height);

@@ -105,7 +105,7 @@ std::optional<double> bound_m(const Row& row, const RayTruth& truth) {
 void check_range(const Target& target, std::size_t least_points) {
   const LaserLine s = scanner();
   const RayCaster caster(target.scene);
-  const RawFrames raw = render(s, caster, Pose::Identity(), {}, no_effects);
+  const RawFrames raw = render(s, caster, Pose::Identity(), {}, no_effects).frames;
   const auto& frames = std::get<StripeImages>(raw);
   const std::vector<RayTruth> truth = true_rays(s, caster, Pose::Identity());
   const Scan scan = acquire(raw);
@@ -124,11 +124,12 @@ void check_range(const Target& target, std::size_t least_points) {
 }
 
 TEST(LaserLineRange, OfAPlaneIsExactButForTheStripesWidth) {
-  check_range(plane_target(0.18, {.name = "grey", .albedo = albedo, .texture = {}}), 1500);
+  check_range(plane_target(0.18, {.name = "grey", .bsdf = Lambert{albedo}, .texture = {}}), 1500);
 }
 
 TEST(LaserLineRange, OfASphereIsExactButForTheStripesWidth) {
-  check_range(sphere_target(0.2, 0.025, {.name = "grey", .albedo = albedo, .texture = {}}), 500);
+  check_range(sphere_target(0.2, 0.025, {.name = "grey", .bsdf = Lambert{albedo}, .texture = {}}),
+              500);
 }
 
 }  // namespace

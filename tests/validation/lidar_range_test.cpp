@@ -73,7 +73,7 @@ double bound_m(const PulsedLidar& s, const RayTruth& ray) {
 void check_range(const Target& target, std::size_t least_points) {
   const PulsedLidar s = lidar();
   const RayCaster caster(target.scene);
-  const Scan scan = acquire(render(s, caster, Pose::Identity(), {}, no_effects));
+  const Scan scan = acquire(render(s, caster, Pose::Identity(), {}, no_effects).frames);
   const std::vector<RayTruth> truth = true_rays(s, caster, Pose::Identity());
   const RangeFigures figures = compare(
       scan, truth, [](std::size_t) { return Eigen::Vector3d(0, 0, 0); },
@@ -83,13 +83,13 @@ void check_range(const Target& target, std::size_t least_points) {
 }
 
 TEST(PulsedLidarRange, OfAPlaneIsExactButForSampling) {
-  check_range(plane_target(12, {.name = "grey", .albedo = 0.5, .texture = {}}), 60 * 80);
+  check_range(plane_target(12, {.name = "grey", .bsdf = Lambert{0.5}, .texture = {}}), 60 * 80);
 }
 
 // A disc of asin(2 / 12) = 0.167 rad radius in pixels of 1 / 120 and 0.7 / 80 rad; nine tenths of
 // it.
 TEST(PulsedLidarRange, OfASphereIsExactButForSampling) {
-  check_range(sphere_target(12, 2, {.name = "grey", .albedo = 0.5, .texture = {}}), 1080);
+  check_range(sphere_target(12, 2, {.name = "grey", .bsdf = Lambert{0.5}, .texture = {}}), 1080);
 }
 
 }  // namespace

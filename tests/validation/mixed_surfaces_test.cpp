@@ -53,7 +53,7 @@ std::optional<double> first_range_m(double extra_m) {
   s.max_range_m = 30;
   const Scene scene{.objects = {plane_at(10 + extra_m), plate(10, 0, 1)},
                     .materials = {plain(0.5)}};
-  const Scan scan = acquire(render(s, RayCaster(scene), Pose::Identity(), {}, no_effects));
+  const Scan scan = acquire(render(s, RayCaster(scene), Pose::Identity(), {}, no_effects).frames);
   if (scan.cloud.empty()) return std::nullopt;
   return scan.cloud.points[0].norm();
 }

@@ -38,7 +38,7 @@ double bound_m(const PhaseCamera& s, const RayCaster& caster, std::size_t ray) {
 void check_range(const Target& target, std::size_t least_points) {
   const PhaseCamera s = camera();
   const RayCaster caster(target.scene);
-  const Scan scan = acquire(render(s, caster, Pose::Identity(), {}, no_effects));
+  const Scan scan = acquire(render(s, caster, Pose::Identity(), {}, no_effects).frames);
   const RangeFigures figures = compare(
       scan, true_rays(s, caster, Pose::Identity()),
       [](std::size_t) { return Eigen::Vector3d(0, 0, 0); },
@@ -48,12 +48,12 @@ void check_range(const Target& target, std::size_t least_points) {
 }
 
 TEST(PhaseCameraRange, OfAPlaneIsExactButForRounding) {
-  check_range(plane_target(1.2, {.name = "grey", .albedo = 0.5, .texture = {}}), 120 * 90);
+  check_range(plane_target(1.2, {.name = "grey", .bsdf = Lambert{0.5}, .texture = {}}), 120 * 90);
 }
 
 // A disc of 150 px * tan(asin(0.3 / 1.2)) = 38.7 px radius less its dim rim: nine tenths of it.
 TEST(PhaseCameraRange, OfASphereIsExactButForRounding) {
-  check_range(sphere_target(1.2, 0.3, {.name = "grey", .albedo = 0.5, .texture = {}}), 4200);
+  check_range(sphere_target(1.2, 0.3, {.name = "grey", .bsdf = Lambert{0.5}, .texture = {}}), 4200);
 }
 
 }  // namespace

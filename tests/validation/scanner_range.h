@@ -18,8 +18,9 @@
 
 namespace scan::synth {
 
-inline constexpr DetectorEffects no_effects = {
-    .shot_noise = false, .read_noise = false, .quantisation = false};
+inline const EffectSet no_effects = {Effect::footprint};
+inline const EffectSet sensor_effects = {Effect::shot_noise, Effect::read_noise,
+                                         Effect::quantisation, Effect::footprint};
 
 // Two objects that every scanner looks at: a plane, tilted by 0.3 rad about y, and a sphere.
 struct Target {

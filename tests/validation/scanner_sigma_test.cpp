@@ -35,12 +35,14 @@ Normalised normalised_errors(
 }
 
 Material grey() {
-  return {.name = "grey", .albedo = 0.5, .texture = {}};
+  return {.name = "grey", .bsdf = Lambert{0.5}, .texture = {}};
 }
 
 template <class Device>
 Scan noisy_scan(const Device& device, const Scene& scene) {
-  return acquire(render(device, RayCaster(scene), Pose::Identity(), {.seed = 17, .scan = 1}, {}));
+  return acquire(
+      render(device, RayCaster(scene), Pose::Identity(), {.seed = 17, .scan = 1}, sensor_effects)
+          .frames);
 }
 
 // Independent normal errors of the stated sigma: the mean square is chi-square over n, 1 +- 5
@@ -88,7 +90,8 @@ TEST(LaserLineSigma, IsThatOfTheErrors) {
   s.step_m = 2e-3;
   s.sensor = {.gain_e_per_dn = 2, .offset_dn = 50, .read_noise_e = 10, .bits = 14};
   const Scene scene = plane_target(0.18, grey()).scene;
-  const RawFrames raw = render(s, RayCaster(scene), Pose::Identity(), {.seed = 17, .scan = 1}, {});
+  const RawFrames raw =
+      render(s, RayCaster(scene), Pose::Identity(), {.seed = 17, .scan = 1}, sensor_effects).frames;
   const auto& poses = std::get<StripeImages>(raw).scanner_from_camera;
   const Normalised errors = normalised_errors(
       acquire(raw), true_rays(s, RayCaster(scene), Pose::Identity()),
@@ -111,7 +114,8 @@ TEST(StereoPairSigma, IsThatOfTheErrors) {
                    .baseline_m = 0.06,
                    .disparities_px = 48};
   s.sensor = {.gain_e_per_dn = 12, .read_noise_e = 20, .bits = 8};
-  const Material noisy{.name = "noise", .albedo = 0.9, .texture = NoiseTexture{0.012, 2, 0.9}};
+  const Material noisy{
+      .name = "noise", .bsdf = Lambert{0.9}, .texture = NoiseTexture{0.012, 2, 0.9}};
   const Scene scene = plane_target(0.6, noisy).scene;
   const Normalised errors =
       normalised_errors(noisy_scan(s, scene), true_rays(s, RayCaster(scene), Pose::Identity()));

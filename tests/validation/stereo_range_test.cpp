@@ -32,7 +32,7 @@ StereoPair stereo_pair() {
 
 // Lattice of 12 mm: 6 px at 0.6 m, waves of 12 px and more.
 Material noisy() {
-  return {.name = "noise", .albedo = 0.9, .texture = NoiseTexture{0.012, 1, 0.9}};
+  return {.name = "noise", .bsdf = Lambert{0.9}, .texture = NoiseTexture{0.012, 1, 0.9}};
 }
 
 // Exact images (grey levels without rounding) and exact disparities.
@@ -141,7 +141,7 @@ void check_range(const Target& target, std::size_t least_points) {
   const StereoPair s = stereo_pair();
   const StereoCalibration& c = s.calibration;
   const RayCaster caster(target.scene);
-  const Scan scan = acquire(render(s, caster, Pose::Identity(), {}, no_effects));
+  const Scan scan = acquire(render(s, caster, Pose::Identity(), {}, no_effects).frames);
   const std::vector<RayTruth> truth = true_rays(s, caster, Pose::Identity());
   const Exact exact = exact_images(s, caster);
   const auto bound_m = [&](std::size_t ray) -> std::optional<double> {
@@ -161,7 +161,7 @@ void check_range(const Target& target, std::size_t least_points) {
 TEST(StereoPairRange, HasNoPointsInTheVoid) {
   const StereoPair s = stereo_pair();
   const RayCaster caster(sphere_target(0.7, 0.15, noisy()).scene);
-  const Scan scan = acquire(render(s, caster, Pose::Identity(), {}, {}));
+  const Scan scan = acquire(render(s, caster, Pose::Identity(), {}, sensor_effects).frames);
   const std::vector<RayTruth> truth = true_rays(s, caster, Pose::Identity());
   const int width = s.calibration.width_px, height = s.calibration.height_px;
   for (const std::uint32_t ray : scan.ray) {

@@ -99,7 +99,7 @@ View paint(const Painter& painter, const Side& side, const Bounds& box, double p
 std::vector<View> six_views(const Mesh& mesh, const std::vector<double>& values, double limit,
                             int size_px) {
   synth::Scene scene;
-  scene.materials.push_back({"surface", 0.5, synth::PlainTexture{}});
+  scene.materials.push_back({.name = "surface"});
   scene.objects.push_back({"surface", Pose::Identity(), mesh, 0});
   const synth::RayCaster caster(scene);
   const Bounds box = bounds_of(mesh.vertices);
