@@ -172,7 +172,8 @@ TEST(PulsedLidar, SaturatesOnASurfaceAtTheLens) {
   lidar.min_range_m = 0;
   lidar.max_range_m = 1;
   const auto frames = std::get<Waveforms>(
-      render(lidar, RayCaster(scene_of(plane_at(1e-9), 1)), Pose::Identity(), {}, {}));
+      render(lidar, RayCaster(scene_of(plane_at(1e-9), 1)), Pose::Identity(), {}, sensor_effects)
+          .frames);
   EXPECT_EQ(*std::max_element(frames.samples.begin(), frames.samples.end()), 65535);
 }
 
