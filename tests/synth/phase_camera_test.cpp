@@ -121,7 +121,7 @@ TEST(PhaseCamera, ScattersByTheShotNoiseLaw) {
   camera.frequencies_hz = {80e6};
   camera.electrons_at_1m = 2000;
   const Scene scene{.objects = {plane_at(1)}, .materials = {plain(1)}};
-  const PhaseTaps frames = taps_of(camera, scene, {}, {.seed = 11, .scan = 3});
+  const PhaseTaps frames = taps_of(camera, scene, sensor_effects, {.seed = 11, .scan = 3});
   const double law_m =
       speed_of_light_m_s / (4 * std::sqrt(2) * std::numbers::pi * 80e6) * std::sqrt(2000) / 1000;
   EXPECT_NEAR(law_m, 9.430e-3, 1e-6);
@@ -223,7 +223,7 @@ TEST(PhaseCamera, RendersTheSameBytesForAnyThreadCount) {
   const Scene scene{.objects = {sphere_at({0, 0, 1}, 0.3)}, .materials = {plain(0.7)}};
   expect_same_for_any_thread_count([&] {
     std::vector<std::uint16_t> all;
-    for (const auto& set : taps_of(camera, scene, {}, {.seed = 9, .scan = 4}).taps)
+    for (const auto& set : taps_of(camera, scene, sensor_effects, {.seed = 9, .scan = 4}).taps)
       for (const auto& tap : set) all.insert(all.end(), tap.pixels.begin(), tap.pixels.end());
     return all;
   });
@@ -234,7 +234,7 @@ TEST(PhaseCamera, GivesEachTapNoiseOfItsOwn) {
   PhaseCamera camera = small_camera();
   camera.contrast = 0;
   const Scene scene{.objects = {plane_at(1)}, .materials = {plain(0.7)}};
-  const PhaseTaps frames = taps_of(camera, scene, {});
+  const PhaseTaps frames = taps_of(camera, scene, sensor_effects);
   EXPECT_NE(frames.taps[0][0].pixels, frames.taps[0][1].pixels);
   EXPECT_NE(frames.taps[0][0].pixels, frames.taps[1][0].pixels);
 }

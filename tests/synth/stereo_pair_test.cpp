@@ -156,7 +156,7 @@ TEST(StereoPair, RendersTheSameBytesForAnyThreadCount) {
   pair.ambient_electrons = 1000;
   const Scene scene{.objects = {plane_at(1)}, .materials = {noisy(0.05, 3)}};
   expect_same_for_any_thread_count([&] {
-    const ImagePair frames = images(pair, scene, {.seed = 5, .scan = 2}, {});
+    const ImagePair frames = images(pair, scene, {.seed = 5, .scan = 2}, sensor_effects);
     return std::pair(frames.left.pixels, frames.right.pixels);
   });
 }
@@ -165,10 +165,12 @@ TEST(StereoPair, RendersTheSameBytesForAnyThreadCount) {
 // = 0.9 DN and more, and equal streams would give equal images.
 TEST(StereoPair, GivesCamerasScansAndSeedsNoiseOfTheirOwn) {
   const Scene scene{.objects = {plane_at(1)}, .materials = {plain(0.4)}};
-  const ImagePair one = images(small_pair(), scene, {.seed = 1, .scan = 0}, {});
+  const ImagePair one = images(small_pair(), scene, {.seed = 1, .scan = 0}, sensor_effects);
   EXPECT_NE(one.left.pixels, one.right.pixels);
-  EXPECT_NE(one.left.pixels, images(small_pair(), scene, {.seed = 2, .scan = 0}, {}).left.pixels);
-  EXPECT_NE(one.left.pixels, images(small_pair(), scene, {.seed = 1, .scan = 1}, {}).left.pixels);
+  EXPECT_NE(one.left.pixels,
+            images(small_pair(), scene, {.seed = 2, .scan = 0}, sensor_effects).left.pixels);
+  EXPECT_NE(one.left.pixels,
+            images(small_pair(), scene, {.seed = 1, .scan = 1}, sensor_effects).left.pixels);
 }
 
 TEST(StereoPair, SeesBlackWhereNothingIs) {

@@ -50,7 +50,7 @@ double fit_error_samples(double pulse, double centre, double echo_e, double vari
 double worst_error_samples(const PulsedLidar& s, double echo_e) {
   const double window_s = 2 * (s.max_range_m - s.min_range_m) / speed_of_light_m_s;
   const double tail_share = 4 / (window_s / s.sample_interval_s);
-  const double step_e = delivered_sensor(s.sensor, no_effects).gain_e_per_dn;
+  const double step_e = delivered_sensor(s.sensor, detector_effects(no_effects)).gain_e_per_dn;
   const double variance_e2 = s.ambient_electrons + step_e * step_e / 12;
   const double limit_e = 3 * std::sqrt(variance_e2 + 1);
   const double pulse = s.pulse_sigma_s / s.sample_interval_s;

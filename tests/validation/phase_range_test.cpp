@@ -22,7 +22,7 @@ PhaseCamera camera() {
 double bound_m(const PhaseCamera& s, const RayCaster& caster, std::size_t ray) {
   const auto column = static_cast<int>(ray % s.camera.width_px);
   const auto row = static_cast<int>(ray / s.camera.width_px);
-  const double step_e = delivered_sensor(s.sensor, no_effects).gain_e_per_dn;
+  const double step_e = delivered_sensor(s.sensor, detector_effects(no_effects)).gain_e_per_dn;
   const double amplitude_e =
       std::abs(expected_phasors(s, caster, Pose::Identity(), column, row).amplitude_e[0]);
   const double angle_rad = std::asin(std::min(1.0, step_e / (std::sqrt(2) * amplitude_e)));

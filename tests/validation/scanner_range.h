@@ -15,12 +15,11 @@
 #include "libscan/acquire/acquire.h"
 #include "libscan/core/parallel.h"
 #include "synth/scanner.h"
+#include "tests/synth/scanner_scenes.h"
 
 namespace scan::synth {
 
 inline const EffectSet no_effects = {Effect::footprint};
-inline const EffectSet sensor_effects = {Effect::shot_noise, Effect::read_noise,
-                                         Effect::quantisation, Effect::footprint};
 
 // Two objects that every scanner looks at: a plane, tilted by 0.3 rad about y, and a sphere.
 struct Target {
