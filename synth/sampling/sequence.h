@@ -18,13 +18,15 @@ class SampleSequence {
 
   // Starts at dimension 0 of the sample with that index, below 2^31.
   void start(std::uint32_t index);
-  double next();              // in [0, 1)
-  Eigen::Vector2d next_2d();  // of one group of dimensions
-  Eigen::Vector3d next_3d();
+  double next();              // in (0, 1)
+  Eigen::Vector2d next_2d();  // of one group of dimensions, its first or its second pair
+  Eigen::Vector3d next_3d();  // of one group of dimensions; (y, z) is its best pair, the first
 
  private:
   std::uint64_t key_ = 0;
-  std::uint32_t index_ = 0;
+  std::uint64_t group_key_ = 0;
+  std::uint32_t index_digits_ = 0;  // least significant first
+  std::uint32_t shuffled_ = 0;      // index within the group of dimensions
   std::uint32_t dimension_ = 0;
 };
 
