@@ -33,6 +33,14 @@ void check_texture(const NoiseTexture& noise, const std::string& place) {
   check_range(place + "/contrast", noise.contrast, 0, 1);
 }
 
+void check_texture(const ImageTexture& image, const std::string& place) {
+  if (image.factors.empty()) throw Error(Trouble::input, place + "/image has no pixels");
+  if (!(std::isfinite(image.width_m) && image.width_m > 0))
+    throw Error(Trouble::input,
+                place + "/width_m is " + std::to_string(image.width_m) + ", must be positive");
+  for (const float value : image.factors.pixels) check_range(place + "/image", value, 0, 1);
+}
+
 double lattice_value(std::int64_t x, std::int64_t y, std::int64_t z) {
   const auto word = [](std::int64_t v) { return static_cast<std::uint32_t>(v); };
   return philox4x32({word(x), word(y), word(z), 0}, {0x6c696273u, 0x63616e21u})[0] * 0x1p-32;
@@ -48,7 +56,7 @@ double factor(const PlainTexture&, const Eigen::Vector3d&) {
 
 double factor(const CheckerTexture& checker, const Eigen::Vector3d& x) {
   const Eigen::Vector3d cell =
-      (x * (2 / checker.period_m)).array().floor();  // dark and light: a period
+      (x * (2 / checker.period_m)).array().round();  // dark and light: a period
   return std::fmod(std::abs(cell.sum()), 2) == 0 ? 1 : 1 - checker.contrast;
 }
 
@@ -63,6 +71,23 @@ double factor(const NoiseTexture& noise, const Eigen::Vector3d& x) {
     place = 2 * place + Eigen::Vector3d(17.31, 5.77, 29.13);
   }
   return 1 - noise.contrast * (1 - sum / weights);
+}
+
+int wrapped(double index, int count) {
+  return static_cast<int>(index - std::floor(index / count) * count) % count;
+}
+
+double factor(const ImageTexture& image, const Eigen::Vector3d& x) {
+  const Image<float>& factors = image.factors;
+  const double pixels_per_m = factors.width / image.width_m;
+  const double across = x.x() * pixels_per_m + (factors.width - 1) / 2.0;
+  const double down = (factors.height - 1) / 2.0 - x.y() * pixels_per_m;
+  const double column = std::floor(across), row = std::floor(down);
+  const int left = wrapped(column, factors.width), right = wrapped(column + 1, factors.width);
+  const int top = wrapped(row, factors.height), bottom = wrapped(row + 1, factors.height);
+  const double u = across - column, v = down - row;
+  return (1 - v) * ((1 - u) * factors(left, top) + u * factors(right, top)) +
+         v * ((1 - u) * factors(left, bottom) + u * factors(right, bottom));
 }
 
 }  // namespace

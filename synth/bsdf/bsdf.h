@@ -4,13 +4,21 @@
 //
 // Local frame: z is the outward normal. `out` points to where the light goes, `in` to where it
 // comes from, both unit and away from the surface. Light is monochromatic. Paths carry the basic
-// radiance L / n^2, which refraction leaves alone, so every BSDF here is reciprocal.
+// radiance B = L / n^2, which refraction leaves alone: B_out is the integral of f B_in |cos| over
+// the directions of `in`, and a lossless boundary between two bodies of equal B changes nothing.
+// With n the index of the side that a direction points to, n_out^2 f(out, in) = n_in^2 f(in, out):
+// plain reciprocity wherever both are on one side.
+//
+// All but the dielectric reflect on their outer side only and are black from below; a shell's
+// caller turns the frame to the side that it looks at.
 //
 // To add one: 1. synth/bsdf/<name>.h with its fields; 2. its name in the variant; 3. evaluate,
-// density and sample for it; bsdf_test.cpp walks the variant (furnace, reciprocity, chi-square).
+// density, sample, delta_lobes and albedo for it; bsdf_test.cpp walks the variant (furnace,
+// reciprocity, chi-square).
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <variant>
@@ -18,6 +26,9 @@
 namespace scan::synth {
 
 enum class Microfacets { ggx, beckmann };
+// Facets with a smaller alpha count as smooth: their lobe is narrower than 2 mrad, and rounding
+// would eat into the angles within it.
+inline constexpr double least_roughness = 1e-3;
 
 struct Lambert {
   double albedo = 0.5;
@@ -25,17 +36,19 @@ struct Lambert {
 // Rough clay, plaster (Oren and Nayar 1994, the qualitative model's full form with
 // interreflection).
 struct OrenNayar {
-  double albedo = 0.5;
+  double albedo = 0.5;     // of its faces, at most 0.95
   double slope_rad = 0.3;  // standard deviation of the facets' slope angle
 };
-// Metal with the complex index eta + i k; roughness 0 is a mirror.
+// Metal with the complex index eta + i k; roughness 0 is a mirror. Light that rough facets send
+// into one another leaves in the end, spread out (Kulla and Conty 2017).
 struct Conductor {
   double eta = 1.5;
   double k = 7;
   double roughness = 0.2;  // alpha of the distribution
   Microfacets facets = Microfacets::ggx;
 };
-// Clear glass, water: the object's inside has this index; roughness 0 is smooth.
+// Clear glass, water: the object's inside has this index; roughness 0 is smooth. Light that rough
+// facets hide is lost: for index 1.5 and light facing it 0.1 % at alpha 0.1, 3 % at 0.5.
 struct Dielectric {
   double index = 1.5;
   double roughness = 0;
@@ -71,11 +84,17 @@ struct BsdfSample {
 std::optional<BsdfSample> sample(const Bsdf& bsdf, const Eigen::Vector3d& out,
                                  const Eigen::Vector3d& u);
 
+// The single directions that light comes from, the brightest first: all that sample() chooses among
+// but a coat's base, each with its reflectance or transmittance for a weight.
+using DeltaLobes = std::array<std::optional<BsdfSample>, 2>;
+DeltaLobes delta_lobes(const Bsdf& bsdf, const Eigen::Vector3d& out);
+
 // All or part of its light leaves in single directions (a mirror, smooth glass, a smooth coat).
 bool has_delta(const Bsdf& bsdf);
 // It lets light through.
 bool is_transmissive(const Bsdf& bsdf);
-// Light that leaves over light that comes, from that direction: closed form or tabulated at start.
+// Light that leaves over light that comes, from that direction: in closed form or from a table,
+// right to 1e-3, that is made at first use.
 double albedo(const Bsdf& bsdf, const Eigen::Vector3d& in);
 
 }  // namespace scan::synth

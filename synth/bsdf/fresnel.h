@@ -14,6 +14,8 @@ namespace scan::synth {
 // n_incident. 1 beyond the critical angle.
 double fresnel_dielectric(double cosine, double index);
 double fresnel_conductor(double cosine, double eta, double k);
+// The dielectric's from the cosines on both sides: it is the same seen from either.
+double fresnel_boundary(double cosine, double cosine_behind, double index);
 
 // Direction of travel behind the boundary: `in` points away from the surface on the normal's side;
 // none under total reflection.
@@ -25,7 +27,8 @@ double fresnel_dielectric_mean(double index);
 
 // Published indices by name and wavelength, linear between table entries: metals "aluminium",
 // "copper", "gold", "iron", "silver", "chromium" (eta, k); clear "bk7", "water", "acrylic",
-// "polycarbonate" (k = 0). None for an unknown name or a wavelength outside the table.
+// "polycarbonate" (k = 0). None for an unknown name or a wavelength that was not measured; metals,
+// "bk7" and "water" cover 0.4 to 1.6 um, "acrylic" 0.42 to 1.62, "polycarbonate" 0.4368 to 1.052.
 struct RefractiveIndex {
   double eta = 1;
   double k = 0;
