@@ -2,194 +2,150 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "synth/ray_caster.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "libscan/core/error.h"
-#include "synth/solid.h"
+#include "synth/embree_tree.h"
 
 namespace scan::synth {
 namespace {
 
-constexpr float float_epsilon = std::numeric_limits<float>::epsilon();
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr std::size_t packet = EmbreeTree::packet;
 
-// One question to the tree. Embree hands it through to the callbacks, which work on it in double.
-struct Query {
-  RTCIntersectContext embree;  // first: Embree's pointer to it is the pointer to the query
-  Ray ray;                     // scene frame
-  ShearedRay sheared_ray;
-  double tree_start_m = 0;  // where the float ray starts along the double one
-  SolidHit best;
-
-  // Takes a hit that is nearer or, at the same distance to rounding, of a lower object or triangle.
-  void offer(const SolidHit& hit, double same_m) {
-    const double gap = hit.distance_m - best.distance_m;
-    const bool lower = std::pair(hit.object, hit.triangle) < std::pair(best.object, best.triangle);
-    if (std::abs(gap) <= same_m ? lower : gap < 0) best = hit;
-  }
-
-  // Where the float ray may end; its rounding is covered by the boxes' margin.
-  float tree_limit() const { return static_cast<float>(best.distance_m - tree_start_m); }
-};
-
-const Solid& solid_of(const void* user_data) {
-  return *static_cast<const Solid*>(user_data);
+bool faces(const Hit& hit, const Eigen::Vector3d& light) {
+  return hit.normal.dot(light - hit.point) > 0;
 }
 
-void bounds_callback(const RTCBoundsFunctionArguments* call) {
-  const Solid& solid = solid_of(call->geometryUserPtr);
-  Bounds box = solid.bounds;
-  if (!solid.triangles.empty()) {
-    const auto [i, j, k] = solid.triangles[call->primID];
-    box = Bounds(solid.vertices[i]);
-    box.extend(solid.vertices[j]);
-    box.extend(solid.vertices[k]);
-  }
-  const Eigen::Vector3f low = (box.min().array() - solid.margin_m).matrix().cast<float>();
-  const Eigen::Vector3f high = (box.max().array() + solid.margin_m).matrix().cast<float>();
-  *call->bounds_o = {low.x(), low.y(), low.z(), 0, high.x(), high.y(), high.z(), 0};
-}
-
-void intersect_callback(const RTCIntersectFunctionNArguments* call) {
-  if (!call->valid[0]) return;
-  auto& query = *reinterpret_cast<Query*>(call->context);
-  const Solid& solid = solid_of(call->geometryUserPtr);
-  const auto hit = meet(solid, call->primID, query.ray, query.sheared_ray);
-  if (!hit) return;
-  query.offer(*hit, rounding_m(solid, query.ray, hit->distance_m));
-  float& tfar = reinterpret_cast<RTCRayHit*>(call->rayhit)->ray.tfar;
-  tfar = std::min(tfar, query.tree_limit());
-}
-
-void occluded_callback(const RTCOccludedFunctionNArguments* call) {
-  if (!call->valid[0]) return;
-  const auto& query = *reinterpret_cast<const Query*>(call->context);
-  if (meet(solid_of(call->geometryUserPtr), call->primID, query.ray, query.sheared_ray))
-    reinterpret_cast<RTCRay*>(call->ray)->tfar = -std::numeric_limits<float>::infinity();
+// Packets gain where rays point the same way and lose where they do not.
+bool same_way(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a.dot(b) > 0.8;
 }
 
 }  // namespace
 
 struct RayCaster::Device {
   explicit Device(const Scene& described);
-  ~Device();
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
 
-  std::optional<SolidHit> closest(Query& query) const;
-  bool any(Query& query) const;
+  void offer_unbounded(Probe& probe) const;
+  bool hits_unbounded(const Probe& probe) const;
+  std::optional<Hit> closest(const Ray& ray_in_world) const;
+  void closest_of_packet(std::span<const Ray> rays_in_world,
+                         std::span<std::optional<Hit>> hits) const;
+  bool any(const std::optional<Ray>& ray_in_world) const;
+  void any_of_packet(std::span<const std::optional<Ray>> rays_in_world,
+                     std::span<bool> found) const;
+
+  // False for a ray that is not finite.
+  bool ask(const Ray& ray_in_world, Probe& probe) const {
+    if (!ray_in_world.origin.allFinite() || !ray_in_world.direction.allFinite()) return false;
+    probe.ray.origin = ray_in_world.origin - origin;
+    probe.ray.direction = ray_in_world.direction;
+    probe.ray.min_m = ray_in_world.min_m;
+    probe.ray.max_m = ray_in_world.max_m;
+    enter(probe, tree.arena());
+    return true;
+  }
+  double rounding_at(const Hit& hit) const;
+  std::optional<Ray> segment(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
   Scene scene;
-  Eigen::Vector3d origin;  // of the scene frame
-  Bounds bounds;           // of the solids in the tree with their margins, scene frame
-  std::vector<Solid> in_tree;
+  Eigen::Vector3d origin;        // of the scene frame
   std::vector<Solid> unbounded;  // tested one by one
   std::vector<double> size_m;    // per object, 0 for an unbounded one
-  RTCDevice embree = nullptr;
-  RTCScene tree = nullptr;
-
- private:
-  void build();
-  std::optional<RTCRay> enter_tree(Query& query) const;
+  EmbreeTree tree;
 };
 
 RayCaster::Device::Device(const Scene& described) : scene(described), origin(scene_origin(scene)) {
+  std::vector<Solid> bounded;
   for (int i = 0; i < static_cast<int>(scene.objects.size()); ++i) {
     Solid solid = make_solid(scene, i, origin);
     size_m.push_back(solid.size_m);
     if (solid.bounds.isEmpty()) continue;
-    if (is_finite(solid.bounds)) bounds.extend(solid.bounds);
-    (is_finite(solid.bounds) ? in_tree : unbounded).push_back(std::move(solid));
+    (is_finite(solid.bounds) ? bounded : unbounded).push_back(std::move(solid));
   }
-  if (in_tree.empty()) return;
-  // The float ray starts where the double ray enters the bounds, so start, direction and box are
-  // each off by float rounding of the bounds' size at most; 16 covers their sum.
-  const double margin_m = 16 * float_epsilon * bounds.diagonal().norm();
-  for (Solid& solid : in_tree) solid.margin_m = margin_m;
-  bounds = Bounds(bounds.min() - Eigen::Vector3d::Constant(margin_m),
-                  bounds.max() + Eigen::Vector3d::Constant(margin_m));
-  build();
+  if (!bounded.empty()) tree.build(std::move(bounded));
 }
 
-RayCaster::Device::~Device() {
-  if (tree) rtcReleaseScene(tree);
-  if (embree) rtcReleaseDevice(embree);
-}
-
-void RayCaster::Device::build() {
-  embree = rtcNewDevice(nullptr);
-  if (!embree) throw Error(Trouble::computation, "ray caster: Embree gives no device");
-  tree = rtcNewScene(embree);
-  rtcSetSceneFlags(tree, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(tree, RTC_BUILD_QUALITY_MEDIUM);
-  for (Solid& solid : in_tree) {
-    RTCGeometry geometry = rtcNewGeometry(embree, RTC_GEOMETRY_TYPE_USER);
-    const std::size_t primitives = std::max<std::size_t>(1, solid.triangles.size());
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitives));
-    rtcSetGeometryUserData(geometry, &solid);
-    rtcSetGeometryBoundsFunction(geometry, bounds_callback, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, intersect_callback);
-    rtcSetGeometryOccludedFunction(geometry, occluded_callback);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(tree, geometry);
-    rtcReleaseGeometry(geometry);
-  }
-  rtcCommitScene(tree);
-  if (rtcGetDeviceError(embree) == RTC_ERROR_NONE) return;
-  rtcReleaseScene(tree);
-  rtcReleaseDevice(embree);
-  throw Error(Trouble::resource, "ray caster: Embree cannot build its tree");
-}
-
-// The part of the query's ray that crosses the tree's bounds, in floats.
-std::optional<RTCRay> RayCaster::Device::enter_tree(Query& query) const {
-  if (!tree) return std::nullopt;
-  const auto span = clip(bounds, query.ray);
-  if (!span) return std::nullopt;
-  query.tree_start_m = span->enter_m;
-  query.sheared_ray = sheared(query.ray.origin, query.ray.direction);
-  rtcInitIntersectContext(&query.embree);
-  const Eigen::Vector3f start =
-      (query.ray.origin + span->enter_m * query.ray.direction).cast<float>();
-  const Eigen::Vector3f direction = query.ray.direction.cast<float>();
-  RTCRay ray{};
-  ray.org_x = start.x();
-  ray.org_y = start.y();
-  ray.org_z = start.z();
-  ray.dir_x = direction.x();
-  ray.dir_y = direction.y();
-  ray.dir_z = direction.z();
-  ray.tfar = static_cast<float>(span->leave_m - span->enter_m);
-  ray.mask = ~0u;
-  return ray;
-}
-
-std::optional<SolidHit> RayCaster::Device::closest(Query& query) const {
+void RayCaster::Device::offer_unbounded(Probe& probe) const {
   for (const Solid& solid : unbounded)
-    if (const auto hit = meet(solid, 0, query.ray, query.sheared_ray))
-      query.offer(*hit, rounding_m(solid, query.ray, hit->distance_m));
-  if (const auto ray = enter_tree(query)) {
-    RTCRayHit rayhit{};
-    rayhit.ray = *ray;
-    rayhit.ray.tfar = std::min(ray->tfar, query.tree_limit());
-    rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(tree, &query.embree, &rayhit);
-  }
-  if (query.best.object < 0) return std::nullopt;
-  return query.best;
+    if (const auto hit = meet(probe, solid)) offer(probe, solid, *hit);
 }
 
-bool RayCaster::Device::any(Query& query) const {
-  for (const Solid& solid : unbounded)
-    if (meet(solid, 0, query.ray, query.sheared_ray)) return true;
-  auto ray = enter_tree(query);
-  if (!ray) return false;
-  rtcOccluded1(tree, &query.embree, &*ray);
-  return ray->tfar < 0;
+bool RayCaster::Device::hits_unbounded(const Probe& probe) const {
+  return std::any_of(unbounded.begin(), unbounded.end(),
+                     [&](const Solid& solid) { return meet(probe, solid).has_value(); });
+}
+
+std::optional<Hit> RayCaster::Device::closest(const Ray& ray) const {
+  Probe probe;
+  if (!ask(ray, probe)) return std::nullopt;
+  do {
+    offer_unbounded(probe);
+    tree.offer_hits(probe);
+  } while (!probe.choosing && must_choose(probe, tree.arena()));
+  return answer(probe, ray.origin);
+}
+
+void RayCaster::Device::closest_of_packet(std::span<const Ray> rays,
+                                          std::span<std::optional<Hit>> hits) const {
+  if (!std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) {
+        return same_way(ray.direction, rays.front().direction);
+      })) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = closest(rays[i]);
+    return;
+  }
+  Probe memory[packet];
+  const std::span<Probe> probes(memory, rays.size());
+  bool wanted[packet] = {};
+  for (std::size_t i = 0; i < rays.size(); ++i) wanted[i] = ask(rays[i], probes[i]);
+  for (bool again = true; again;) {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (wanted[i]) offer_unbounded(probes[i]);
+    tree.offer_hits(probes, wanted);
+    again = false;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      again |= wanted[i] = !probes[i].choosing && must_choose(probes[i], tree.arena());
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = answer(probes[i], rays[i].origin);
+}
+
+bool RayCaster::Device::any(const std::optional<Ray>& ray) const {
+  Probe probe;
+  return ray && ask(*ray, probe) && (hits_unbounded(probe) || tree.any_hit(probe));
+}
+
+void RayCaster::Device::any_of_packet(std::span<const std::optional<Ray>> rays,
+                                      std::span<bool> found) const {
+  Probe memory[packet];
+  const std::span<Probe> probes(memory, rays.size());
+  bool wanted[packet] = {};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const bool asked = rays[i] && ask(*rays[i], probes[i]);
+    found[i] = asked && hits_unbounded(probes[i]);
+    wanted[i] = asked && !found[i];
+  }
+  tree.any_hit(probes, wanted, found);
+}
+
+// More than the rounding of a hit's point and of its object's coordinates.
+double RayCaster::Device::rounding_at(const Hit& hit) const {
+  const double object_m = hit.object >= 0 ? size_m[hit.object] : 0;
+  return 128 * epsilon * (hit.point.norm() + origin.norm() + hit.distance_m + object_m);
+}
+
+// None if nothing is left of it. What stands within the rounding of its end is the end's own
+// surface.
+std::optional<Ray> RayCaster::Device::segment(const Eigen::Vector3d& from,
+                                              const Eigen::Vector3d& to) const {
+  const Eigen::Vector3d towards = to - from;
+  const double length_m = towards.norm();
+  const double margin_m = 32 * epsilon * (from.norm() + to.norm() + origin.norm());
+  if (!(length_m > margin_m && std::isfinite(length_m))) return std::nullopt;
+  return Ray{from, towards / length_m, 0, length_m - margin_m};
 }
 
 Hit facing(Hit hit, const Eigen::Vector3d& direction) {
@@ -211,36 +167,53 @@ const Scene& RayCaster::scene() const {
 std::optional<Hit> RayCaster::closest(const Eigen::Vector3d& origin,
                                       const Eigen::Vector3d& direction, double min_m,
                                       double max_m) const {
-  if (!origin.allFinite() || !direction.allFinite()) return std::nullopt;
-  Query query{};
-  query.ray = {origin - device_->origin, direction, min_m, max_m};
-  const auto hit = device_->closest(query);
-  if (!hit) return std::nullopt;
-  return Hit{hit->distance_m, origin + hit->distance_m * direction, hit->normal.normalized(),
-             hit->object, hit->triangle};
+  return device_->closest({origin, direction, min_m, max_m});
+}
+
+void RayCaster::closest(std::span<const Ray> rays, std::span<std::optional<Hit>> hits) const {
+  for (std::size_t i = 0; i < rays.size(); i += packet) {
+    const std::size_t count = std::min(packet, rays.size() - i);
+    device_->closest_of_packet(rays.subspan(i, count), hits.subspan(i, count));
+  }
 }
 
 bool RayCaster::occluded(const Hit& hit, const Eigen::Vector3d& light) const {
-  if (!(hit.normal.dot(light - hit.point) > 0)) return true;
-  return blocked(leave(hit, hit.normal), light);
+  return !faces(hit, light) || blocked(leave(hit, hit.normal), light);
+}
+
+void RayCaster::occluded(std::span<const std::optional<Hit>> hits, const Eigen::Vector3d& light,
+                         std::span<bool> dark) const {
+  std::optional<Ray> rays[packet];
+  for (std::size_t i = 0; i < hits.size(); i += packet) {
+    const std::size_t count = std::min(packet, hits.size() - i);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto& hit = hits[i + k];
+      rays[k].reset();
+      if (hit && faces(*hit, light)) rays[k] = device_->segment(leave(*hit, hit->normal), light);
+    }
+    device_->any_of_packet({rays, count}, dark.subspan(i, count));
+    for (std::size_t k = 0; k < count; ++k)
+      dark[i + k] |= !hits[i + k] || !faces(*hits[i + k], light);
+  }
 }
 
 Eigen::Vector3d RayCaster::leave(const Hit& hit, const Eigen::Vector3d& direction) const {
-  const double size_m = hit.object >= 0 ? device_->size_m[hit.object] : 0;
-  const double scale_m = hit.point.norm() + device_->origin.norm() + hit.distance_m + size_m;
-  const double offset_m = 128 * std::numeric_limits<double>::epsilon() * scale_m;
-  return hit.point + std::copysign(offset_m, hit.normal.dot(direction)) * hit.normal;
+  return hit.point +
+         std::copysign(device_->rounding_at(hit), hit.normal.dot(direction)) * hit.normal;
 }
 
 bool RayCaster::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
-  const double length_m = (to - from).norm();
-  // what stands within the rounding of the end is the end's own surface
-  const double margin_m = 128 * std::numeric_limits<double>::epsilon() *
-                          (from.norm() + to.norm() + device_->origin.norm());
-  if (!(length_m > margin_m)) return false;
-  Query query{};
-  query.ray = {from - device_->origin, (to - from) / length_m, 0, length_m - margin_m};
-  return device_->any(query);
+  return device_->any(device_->segment(from, to));
+}
+
+void RayCaster::blocked(std::span<const Eigen::Vector3d> from, const Eigen::Vector3d& to,
+                        std::span<bool> answers) const {
+  std::optional<Ray> rays[packet];
+  for (std::size_t i = 0; i < from.size(); i += packet) {
+    const std::size_t count = std::min(packet, from.size() - i);
+    for (std::size_t k = 0; k < count; ++k) rays[k] = device_->segment(from[i + k], to);
+    device_->any_of_packet({rays, count}, answers.subspan(i, count));
+  }
 }
 
 }  // namespace scan::synth

@@ -5,8 +5,10 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "synth/scene.h"
+#include "synth/shape_rays.h"
 
 namespace scan::synth {
 
@@ -16,6 +18,7 @@ struct Hit {
   Eigen::Vector3d normal;  // geometric, unit, outward of the object
   int object = -1;
   std::uint32_t triangle = 0;  // of a mesh
+  double error_m = 0;          // bound of the rounding of the distance
 };
 
 // The same hit as seen along `direction`: its normal turned against the ray. Shells reflect on both
@@ -23,10 +26,11 @@ struct Hit {
 Hit facing(Hit hit, const Eigen::Vector3d& direction);
 
 // Built once per scene, used from many threads. Embree's tree (ROBUST, floats relative to the
-// scene's own origin, widened boxes) only proposes triangles and shapes; each is intersected in
-// double precision, so a scene far from the origin keeps its accuracy. Triangles are tested without
-// leaks at shared edges and vertices; triangles without area are never hit. Analytic shapes: see
-// shape_rays.h.
+// scene's own origin, widened boxes) only proposes blocks of triangles and shapes, floats with a
+// bound of their rounding leave some of them; who is hit and where is decided in double precision,
+// so a scene far from the origin keeps its accuracy, and nothing depends on Embree, on the order of
+// its search or on the processor. Triangles are tested without leaks at shared edges and vertices;
+// triangles without area are never hit. Analytic shapes: see shape_rays.h.
 class RayCaster {
  public:
   // Checks the scene first: throws scan::Error (input).
@@ -42,16 +46,29 @@ class RayCaster {
   std::optional<Hit> closest(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                              double min_m = 0, double max_m = 1e30) const;
 
+  // The same for rays of the world frame, to the bit, and faster if neighbours in the list are
+  // neighbours in space, as in a row of an image. As many hits as rays.
+  void closest(std::span<const Ray> rays, std::span<std::optional<Hit>> hits) const;
+
   // True if something stands between `hit` (on a surface with that normal) and `light`; the surface
   // itself does not count. A light behind or in the plane of the surface is occluded.
   bool occluded(const Hit& hit, const Eigen::Vector3d& light) const;
 
-  // Where a ray that leaves a hit starts: off the surface, on the side that `direction` points to,
-  // by more than the rounding of the hit and of its object.
+  // The same for neighbouring hits; what is not there is dark.
+  void occluded(std::span<const std::optional<Hit>> hits, const Eigen::Vector3d& light,
+                std::span<bool> dark) const;
+
+  // Start of a secondary ray: off the surface of the hit, on the side that `direction` points to,
+  // by more than the rounding of the hit and of its object's coordinates.
   Eigen::Vector3d leave(const Hit& hit, const Eigen::Vector3d& direction) const;
 
-  // True if anything stands between two points that are off their surfaces (see leave).
+  // True if something stands between two points that are in free space or off their surfaces (made
+  // with `leave`).
   bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+  // The same for neighbouring points.
+  void blocked(std::span<const Eigen::Vector3d> from, const Eigen::Vector3d& to,
+               std::span<bool> answers) const;
 
   const Scene& scene() const;
 

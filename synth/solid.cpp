@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "libscan/core/parallel.h"
+
 namespace scan::synth {
 namespace {
 
@@ -18,21 +20,29 @@ Bounds world_bounds(const Object& object) {
   return box;
 }
 
-bool has_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
-  const double coordinate = std::max({a.norm(), b.norm(), c.norm()});
-  return (b - a).cross(c - a).norm() > 4 * epsilon * coordinate * longest;
+// The same triangle, its first corner opposite to its longest edge.
+Triangle turned(const std::vector<Eigen::Vector3d>& vertices, Triangle t) {
+  double longest_m2 = -1;
+  int first = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double edge_m2 = (vertices[t[(i + 1) % 3]] - vertices[t[(i + 2) % 3]]).squaredNorm();
+    if (edge_m2 > longest_m2) first = i;
+    longest_m2 = std::max(longest_m2, edge_m2);
+  }
+  return {t[first], t[(first + 1) % 3], t[(first + 2) % 3]};
 }
 
 void take_mesh(const Mesh& mesh, const Pose& scene_from_object, Solid& solid) {
-  solid.triangles = mesh.triangles;
+  solid.is_mesh = true;
+  solid.vertices.reserve(mesh.vertices.size());
   for (const Eigen::Vector3d& v : mesh.vertices) {
     solid.vertices.push_back(scene_from_object * v);
     solid.bounds.extend(solid.vertices.back());
   }
-  for (const Triangle& t : mesh.triangles)
-    solid.has_area.push_back(
-        has_area(solid.vertices[t[0]], solid.vertices[t[1]], solid.vertices[t[2]]));
+  solid.triangles.resize(mesh.triangles.size());
+  parallel_for(
+      mesh.triangles.size(),
+      [&](std::size_t i) { solid.triangles[i] = turned(solid.vertices, mesh.triangles[i]); }, 4096);
 }
 
 }  // namespace
@@ -67,24 +77,17 @@ Solid make_solid(const Scene& scene, int index, const Eigen::Vector3d& origin) {
   return solid;
 }
 
-double rounding_m(const Solid& solid, const Ray& ray, double distance_m) {
-  return 64 * epsilon * (ray.origin.norm() + distance_m + solid.size_m);
+bool has_area(const Solid& solid, const Triangle& corners) {
+  const auto [i, j, k] = corners;
+  const Eigen::Vector3d &a = solid.vertices[i], &b = solid.vertices[j], &c = solid.vertices[k];
+  const double coordinate = std::max({a.norm(), b.norm(), c.norm()});
+  return (b - a).cross(c - a).norm() > 4 * epsilon * coordinate * (c - b).norm();
 }
 
-std::optional<SolidHit> meet(const Solid& solid, std::uint32_t triangle, const Ray& ray,
-                             const ShearedRay& sheared_ray) {
-  if (solid.triangles.empty()) {
-    const auto hit = intersect(solid.shape, ray);
-    if (!hit) return std::nullopt;
-    return SolidHit{hit->distance_m, hit->normal, solid.object, 0};
-  }
-  if (!solid.has_area[triangle]) return std::nullopt;
-  const auto [i, j, k] = solid.triangles[triangle];
-  const Eigen::Vector3d &a = solid.vertices[i], &b = solid.vertices[j], &c = solid.vertices[k];
-  const auto distance = line_distance(sheared_ray, a, b, c);
-  const double nearest = std::max(ray.min_m, rounding_m(solid, ray, 0));
-  if (!distance || !(*distance > nearest && *distance < ray.max_m)) return std::nullopt;
-  return SolidHit{*distance, (b - a).cross(c - a), solid.object, triangle};
+Eigen::Vector3d normal_of(const Solid& solid, const Triangle& corners) {
+  const auto [i, j, k] = corners;
+  const Eigen::Vector3d& a = solid.vertices[i];
+  return (solid.vertices[j] - a).cross(solid.vertices[k] - a).normalized();
 }
 
 }  // namespace scan::synth

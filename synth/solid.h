@@ -13,24 +13,16 @@
 
 namespace scan::synth {
 
-// Where a ray meets an object; the normal points outwards and need not have length 1.
-struct SolidHit {
-  double distance_m = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  int object = -1;
-  std::uint32_t triangle = 0;
-};
-
 // The scene frame is the world's, moved to `scene_origin`, which keeps coordinates small.
 struct Solid {
   int object = 0;
-  double size_m = 0;    // diagonal of its bounds; 0 if they are infinite
-  double margin_m = 0;  // that a search structure in floats must add to its boxes
+  double size_m = 0;  // diagonal of its bounds; 0 if they are infinite
   Bounds bounds;
-  PlacedShape shape;  // used if there are no triangles
+  bool is_mesh = false;
+  PlacedShape shape;  // of no mesh
   std::vector<Eigen::Vector3d> vertices;
+  // Turned so that the first corner faces the longest edge, where the normal is most accurate.
   std::vector<Triangle> triangles;
-  std::vector<char> has_area;  // per triangle: its height exceeds the rounding of its coordinates
 };
 
 // Middle of all finite objects; without one, the first object's origin.
@@ -40,11 +32,16 @@ Solid make_solid(const Scene& scene, int object, const Eigen::Vector3d& origin);
 
 bool is_finite(const Bounds& box);
 
-// The triangle, or the whole shape, met by a ray of the scene frame; `sheared_ray` is the same ray.
-std::optional<SolidHit> meet(const Solid& solid, std::uint32_t triangle, const Ray& ray,
-                             const ShearedRay& sheared_ray);
+// True if the triangle's height exceeds the rounding of its coordinates; others are never hit.
+bool has_area(const Solid& solid, const Triangle& corners);
 
-// Distances that differ by less are equal.
-double rounding_m(const Solid& solid, const Ray& ray, double distance_m);
+// Unit, by the order of the corners.
+Eigen::Vector3d normal_of(const Solid& solid, const Triangle& corners);
+
+// Distances from an origin at `from_m` to things of `size_m` that differ by less are equal; nearer
+// hits are on the surface that the ray starts on.
+inline double rounding_m(double from_m, double size_m) {
+  return 64 * std::numeric_limits<double>::epsilon() * (from_m + size_m);
+}
 
 }  // namespace scan::synth

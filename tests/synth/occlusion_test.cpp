@@ -68,5 +68,30 @@ TEST(Occlusion, SeesWhatStandsBetweenAndOnlyThat) {
   EXPECT_TRUE(caster.occluded(*floor, {4, 0, 0})) << "and in its plane";
 }
 
+// Between two points of one convex body's surface nothing stands, seen from inside; from outside
+// the body itself does.
+TEST(Occlusion, LeavesBothSurfacesOfASegmentOutOfAccount) {
+  const RayCaster caster(scene_of({bumpy_ball(40, 80), Shape{SphereShape{0.3}}}, at(7, 5, -3)));
+  const Eigen::Vector3d centre(7, 5, -3);
+  const auto surface_hit = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
+    return *caster.closest(from, direction);
+  };
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    RandomStream random(12, 0, i);
+    const Eigen::Vector3d up = random_vector(random).normalized();
+    const Hit floor = surface_hit(centre, up);      // on the sphere, from inside
+    const Hit roof = surface_hit(floor.point, up);  // on the mesh above it
+    const Eigen::Vector3d start = caster.leave(floor, up), end = caster.leave(roof, -up);
+    EXPECT_GT((start - floor.point).dot(floor.normal), 0);
+    EXPECT_LT((end - roof.point).dot(roof.normal), 0);
+    ASSERT_FALSE(caster.blocked(start, end)) << i;
+    ASSERT_FALSE(caster.blocked(end, start)) << i;
+    ASSERT_TRUE(caster.blocked(caster.leave(floor, -up), end)) << "from inside the sphere";
+    ASSERT_TRUE(caster.blocked(start, caster.leave(roof, up))) << "to outside the mesh";
+    EXPECT_FALSE(caster.blocked(centre, caster.leave(floor, -up)));
+  }
+  EXPECT_FALSE(caster.blocked(centre, centre));
+}
+
 }  // namespace
 }  // namespace scan::synth
