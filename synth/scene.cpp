@@ -3,6 +3,8 @@
 #include "synth/scene.h"
 
 #include "libscan/core/error.h"
+#include "synth/check_pose.h"
+#include "synth/medium/diffusion.h"
 #include "synth/texture.h"
 
 namespace scan::synth {
@@ -17,23 +19,20 @@ std::string name_of(const char* kind, const std::string& name, std::size_t index
 }
 
 void check_material(const Material& material, const std::string& place) {
-  if (const auto* matt = std::get_if<Lambert>(&material.bsdf))
-    if (!(matt->albedo >= 0 && matt->albedo <= 1))
-      refuse(place + "/albedo is " + std::to_string(matt->albedo) + ", must be from 0 to 1");
+  check(material.bsdf, place);
   check(material.texture, place + "/texture");
-}
-
-void check_pose(const Pose& pose, const std::string& place) {
-  if (!pose.matrix().allFinite()) refuse(place + "/world_from_object is not finite");
-  const Eigen::Matrix3d r = pose.linear();
-  const double error = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (error > 1e-9 || r.determinant() < 0)
-    refuse(place + "/world_from_object is no rigid motion: R^T R differs from 1 by " +
-           std::to_string(error) + ", at most 1e-9");
+  const bool is_dielectric = std::holds_alternative<Dielectric>(material.bsdf);
+  const bool has_albedo = !is_dielectric && !std::holds_alternative<Conductor>(material.bsdf);
+  if (!has_albedo && !std::holds_alternative<PlainTexture>(material.texture))
+    refuse(place + "/texture multiplies an albedo, which metal and clear surfaces lack");
+  if (!material.interior) return;
+  if (!is_dielectric)
+    refuse(place + "/interior lies behind a surface that no light passes; only a dielectric does");
+  check(*material.interior, place + "/interior");
 }
 
 void check_object(const Scene& scene, const Object& object, const std::string& place) {
-  check_pose(object.world_from_object, place);
+  check_pose(object.world_from_object, place + "/world_from_object");
   if (object.material < 0 || object.material >= static_cast<int>(scene.materials.size()))
     refuse(place + "/material is " + std::to_string(object.material) + ", but the scene has " +
            std::to_string(scene.materials.size()));
@@ -43,7 +42,44 @@ void check_object(const Scene& scene, const Object& object, const std::string& p
     throw Error(error.trouble(), place + ": " + error.what(), error.hint());
   }
   const auto* mesh = std::get_if<Mesh>(&object.geometry);
-  if (mesh && mesh->empty()) refuse(place + ": mesh has no triangles");
+  if (!mesh) return;
+  if (mesh->empty()) refuse(place + ": mesh has no triangles");
+  if (!std::holds_alternative<Dielectric>(scene.materials[object.material].bsdf)) return;
+  if (const std::size_t open = edge_census(*mesh).boundary_edges; open > 0)
+    refuse(place + ": its mesh has " + std::to_string(open) +
+           " open edges, must be closed to be filled with a dielectric");
+}
+
+bool scatters_inside(const Material& material) {
+  return material.interior && material.interior->scattering_per_m > 0;
+}
+
+// The Lambert surface of equal diffuse albedo.
+void make_opaque(Material& material) {
+  const double index = std::get<Dielectric>(material.bsdf).index;
+  material.bsdf = Lambert{diffuse_albedo(*material.interior, index)};
+  material.interior.reset();
+}
+
+// So that light passes quickly where the medium is thin.
+void prepare(Medium& medium) {
+  if (auto* grid = std::get_if<DensityGrid>(&medium.density)) set_majorants(*grid);
+}
+
+// Meshes are shells, so only shapes have an inside that light cannot leave.
+void check_light(const Scene& scene, const Light& light, const std::string& place) {
+  check(light, place);
+  const auto* lamp = std::get_if<PointLight>(&light);
+  if (!lamp) return;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    const auto* shape = std::get_if<Shape>(&object.geometry);
+    if (!shape || std::holds_alternative<Dielectric>(scene.materials[object.material].bsdf))
+      continue;
+    if (field(PlacedShape{object.world_from_object, *shape}, lamp->position_m).value_m < 0)
+      refuse(place + "/position_m lies inside " + name_of("objects", object.name, i) +
+             ", which is opaque");
+  }
 }
 
 }  // namespace
@@ -53,6 +89,9 @@ void check(const Scene& scene) {
     check_material(scene.materials[i], name_of("materials", scene.materials[i].name, i));
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     check_object(scene, scene.objects[i], name_of("objects", scene.objects[i].name, i));
+  if (scene.medium) check(*scene.medium, "scene/medium");
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    check_light(scene, scene.lights[i], name_of("lights", "", i));
 }
 
 TrueSurface true_surface(const Scene& scene) {
@@ -83,16 +122,8 @@ Bsdf bsdf_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world) 
   return bsdf;
 }
 
-double albedo_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world) {
-  const Bsdf bsdf = bsdf_at(scene, object, x_in_world);
-  const auto* matt = std::get_if<Lambert>(&bsdf);
-  return matt ? matt->albedo : 0;
-}
-
 bool is_clear(const Material& material) {
-  const auto* glass = std::get_if<Dielectric>(&material.bsdf);
-  return glass && glass->roughness == 0 &&
-         !(material.interior && material.interior->scattering_per_m > 0);
+  return is_transmissive(material.bsdf) && has_delta(material.bsdf) && !scatters_inside(material);
 }
 
 Scene simplified(const Scene& scene, const EffectSet& effects) {
@@ -102,9 +133,20 @@ Scene simplified(const Scene& scene, const EffectSet& effects) {
   if (!effects.has(Effect::refraction))
     std::erase_if(kept.objects, [&](const Object& object) {
       const Material& material = scene.materials[object.material];
-      return std::holds_alternative<Dielectric>(material.bsdf) &&
-             !(material.interior && material.interior->scattering_per_m > 0);
+      return std::holds_alternative<Dielectric>(material.bsdf) && !scatters_inside(material);
     });
+  for (Material& material : kept.materials) {
+    if (!effects.has(Effect::subsurface) && scatters_inside(material)) make_opaque(material);
+    if (material.interior) prepare(*material.interior);
+  }
+  if (kept.medium) prepare(*kept.medium);
+  return kept;
+}
+
+Scene without_clear_objects(const Scene& scene) {
+  Scene kept = scene;
+  std::erase_if(kept.objects,
+                [&](const Object& object) { return is_clear(scene.materials[object.material]); });
   return kept;
 }
 

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "libscan/core/image.h"
 #include "libscan/core/mesh.h"
 #include "libscan/core/shape.h"
 #include "libscan/verify/truth.h"
@@ -19,8 +20,10 @@
 
 namespace scan::synth {
 
-// Solid textures: a factor on the albedo at a point of the object, in the object's frame.
+// Textures: a factor on the albedo at a point of the object, in the object's frame.
 struct PlainTexture {};
+// Cubes of half a period, dark and light in turn; one is centred at the origin, so that faces at
+// multiples of half a period run through the middle of cubes and not between them.
 struct CheckerTexture {
   double period_m = 0.01;
   double contrast = 0.5;  // albedo times 1 or 1 - contrast
@@ -31,7 +34,13 @@ struct NoiseTexture {
   int octaves = 4;
   double contrast = 0.8;
 };
-using Texture = std::variant<PlainTexture, CheckerTexture, NoiseTexture>;
+// A picture of factors from 0 to 1 upon the xy plane, seen from +z with its top row at +y, centred
+// at the origin and repeated; bilinear between pixels.
+struct ImageTexture {
+  Image<float> factors;
+  double width_m = 0.1;  // of the whole picture; its pixels are square
+};
+using Texture = std::variant<PlainTexture, CheckerTexture, NoiseTexture, ImageTexture>;
 
 // An object's surface and what it encloses. A texture multiplies the albedo of a Lambert,
 // Oren-Nayar or plastic surface. `interior` fills an object with a dielectric surface: absorbing
@@ -61,6 +70,7 @@ struct Scene {
 };
 
 // Throws scan::Error (input) naming object and field.
+// A point light inside an opaque shape is refused; a mesh is a shell, and light may stand in it.
 void check(const Scene& scene);
 
 TrueSurface true_surface(const Scene& scene);  // in the world frame
@@ -68,14 +78,15 @@ TrueSurface true_surface(const Scene& scene);  // in the world frame
 // How the object's surface reflects at a point (world frame), its texture applied.
 Bsdf bsdf_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world);
 
-// Albedo of a Lambert surface at a point of an object (world frame), 0 to 1; 0 for other surfaces.
-double albedo_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world);
-
 // The scene as it is rendered with those effects: without refraction no object with a dielectric
 // surface and no scattering inside; without subsurface scattering translucent bodies are Lambert
-// surfaces of equal albedo; without medium or scene lights none of them. What is left out costs
-// nothing. Objects keep their order; `name`s tell who is who.
+// surfaces of equal diffuse albedo (synth/medium/diffusion.h); without medium or scene lights none
+// of them. What is left out costs nothing; density grids get their majorants. Objects keep their
+// order; `name`s tell who is who.
 Scene simplified(const Scene& scene, const EffectSet& effects);
+
+// What there is to measure: the scene without its clear objects.
+Scene without_clear_objects(const Scene& scene);
 
 // Our own models, metres. bracket: a machined angle of 80 x 50 x 45 mm with a bore (radius 9 mm), a
 // fillet, a thin wall (1.5 mm) and sharp edges; genus 1 (the bore). bud: an organic form of blended

@@ -39,6 +39,7 @@ std::optional<Effect> effect_named(std::string_view word) {
 EffectSet EffectSet::all() {
   EffectSet set;
   set.bits_.set();
+  set.everywhere_ = true;
   return set;
 }
 

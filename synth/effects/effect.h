@@ -57,7 +57,12 @@ class EffectSet {
   EffectSet(std::initializer_list<Effect> effects) {
     for (const Effect effect : effects) set(effect);
   }
+  // All effects, everywhere: the reference that a plan is held against.
   static EffectSet all();
+
+  // Whether each ray gets each effect of the set, or just those rays that a renderer's own pilot
+  // finds it worth while for (the usual).
+  bool everywhere() const { return everywhere_; }
 
   bool has(Effect effect) const { return bits_.test(static_cast<std::size_t>(effect)); }
   EffectSet& set(Effect effect, bool on = true) {
@@ -69,6 +74,7 @@ class EffectSet {
 
  private:
   std::bitset<effect_count> bits_;
+  bool everywhere_ = false;
 };
 
 }  // namespace scan::synth

@@ -4,15 +4,22 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <memory>
 #include <vector>
 
 #include "synth/ray_caster.h"
 
 namespace scan::synth {
 
+class SmoothSurfaces;
+
 // One way from the light to a point. Irradiance on a surface facing `arriving` is the emitter's
-// irradiance(emitted, length_m) times throughput times spread.
+// irradiance(emitted, length_m) times throughput times spread; paths that carry radiance over
+// index^2 add it over point_index^2.
 struct Connection {
+  static constexpr int most_bounces = 8;
+
   Eigen::Vector3d arriving;  // unit, from the point towards where the light comes from
   Eigen::Vector3d emitted;   // unit, of travel at the light
   double length_m = 0;       // geometric length of the way
@@ -20,30 +27,52 @@ struct Connection {
   double throughput = 1;     // product of Fresnel shares and absorption in clear bodies
   double spread =
       1;  // length^2 d(solid angle at the light) / d(area across the light): 1 if straight
-  int bounces = 0;  // smooth surfaces on the way
+  int bounces = 0;         // smooth surfaces on the way
+  int reflections = 0;     // those of them that reflect it
+  bool over_coat = false;  // one of them is a smooth coat, which is not smooth below
+  double open_m = 0;       // the part of the length that is in no clear body: in air or fog
+  double point_index = 1;  // of the clear body that the point lies in
+  // Where the way meets the smooth surfaces, from the point to the light.
+  std::array<Eigen::Vector3d, most_bounces> bends;
 };
 
-// The scene's smooth surfaces (mirrors, clear glass), found once.
+// The scene's smooth surfaces (mirrors, clear bodies, smooth coats), found once. Clear bodies stand
+// in air: their outside has index 1.
+//
+// Which ways are found:
+//   straight; through clear bodies, with refraction at every surface on the way;
+//   over facets (of boxes, planes, cylinders' ends, meshes), also glass facets from outside and
+//   inside, for every sequence of as many facets in a row as keep facets^number below 200 (a box:
+//   2, so a pane's transmission includes its double inner reflection; two flat mirrors: 7), with
+//   clear bodies in between;
+//   over one curved surface, and through one curved body with none or one inner reflection, from
+//   several starts spread over it; of faceted curves, what facets show.
+// Not found: reflections between two curved surfaces, or from a curved one to a facet. Grazing
+// light and ways of a throughput below 1e-7 are left out.
 class Connector {
  public:
-  // Ways over at most `most_bounces` smooth surfaces.
+  // Ways over at most `most_bounces` smooth surfaces, never more than Connection's. Throws
+  // scan::Error (input) for a clear body whose interior is a grid.
   Connector(const RayCaster& caster, int most_bounces);
 
+  // Replaces what `ways` holds. An opaque surface is lit from the side of `at.normal` only, so turn
+  // it towards the viewer (see facing); a dielectric one from both sides.
   // All ways from `light` to the surface point `at` that were found, the straight one first if it
-  // is free; other surfaces between block it. Ways over smooth surfaces solve Fermat's principle by
-  // Newton's method on the direction that leaves `at`, started from the straight line (refraction)
-  // and from each mirror or glass facet's reflection of the light; of a curved mirror's several
-  // solutions those nearest to the starts are found. The same for any thread.
+  // is free, then by optical length; other surfaces between block it. Ways over smooth surfaces
+  // solve Fermat's principle by Newton's method on the direction that leaves `at`, started from the
+  // straight line (refraction) and from each mirror or glass facet's reflection of the light; of a
+  // curved mirror's several solutions those nearest to the starts are found. The same for any
+  // thread.
   void connect(const Hit& at, const Eigen::Vector3d& light, std::vector<Connection>& ways) const;
-  // From a point in free space, such as one in fog.
+  // From a point in free space, such as one in fog, or inside a clear body.
   void connect(const Eigen::Vector3d& at, const Eigen::Vector3d& light,
                std::vector<Connection>& ways) const;
 
-  bool straight_only() const { return smooth_objects_.empty(); }
+  bool straight_only() const { return !surfaces_; }
 
  private:
   const RayCaster& caster_;
-  std::vector<int> smooth_objects_;
+  std::shared_ptr<const SmoothSurfaces> surfaces_;  // none if the scene has no smooth surface
   int most_bounces_;
 };
 

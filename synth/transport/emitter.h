@@ -16,12 +16,21 @@ struct EmittedRay {
   double flux = 0;            // irradiance times area, in the unit of irradiance() times m^2
 };
 
+// Where along a ray fog is brightest by an emitter, and how far from there half as bright; both
+// finite.
+struct Brightest {
+  double distance_m = 0;
+  double half_width_m = 0;  // above 0
+};
+
 // World frame. The unit of irradiance is the device's own: a white Lambert surface under irradiance
 // E facing it gives E electrons to the pixel, beam or tap that sees it (so radiance L gives pi L).
 // position(): where the light seems to come from. irradiance(direction, length_m): on a surface
 // that faces the light, at that distance along a unit direction from position(), nothing in
 // between; 0 where it does not shine. sample(u): a ray drawn in proportion to the light, so flux is
-// the same for every ray; flux(): that number, the total.
+// the same for every ray; flux(): that number, the total. An emitter that lights a thin sheet or
+// beam should also have brightest(origin, direction), a Brightest for a ray through fog that
+// crosses it; without, that is the place nearest to position().
 template <class T>
 concept Emitter = requires(const T& emitter, const Eigen::Vector3d& direction, double length_m,
                            const Eigen::Vector2d& u) {

@@ -11,6 +11,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/random.h"
+#include "synth/medium/diffusion.h"
 #include "synth/texture.h"
 
 namespace scan::synth {
@@ -54,6 +55,90 @@ TEST(Scene, NamesWhatIsWrong) {
   EXPECT_NE(complaint_of(scene).find("no triangles"), std::string::npos);
 }
 
+TEST(Scene, NamesWhatIsWrongWithAMedium) {
+  Scene scene = one_object();
+  scene.medium = Medium{.absorption_per_m = -1};
+  EXPECT_NE(complaint_of(scene).find("scene/medium/absorption_per_m: -1"), std::string::npos);
+  scene = one_object();
+  scene.materials[0].interior = Medium{};
+  scene.materials[0].bsdf = Dielectric{1.4};
+  EXPECT_EQ(complaint_of(scene), "");
+  scene.materials[0].interior->phase = HenyeyGreenstein{-1};
+  EXPECT_NE(complaint_of(scene).find("clay/interior/phase/mean_cosine: -1"), std::string::npos);
+}
+
+// A ball of clay, one of clear glass, one of tinted glass, one of marble, in fog under a lamp.
+Scene scene_of_all_kinds() {
+  Scene scene = one_object();
+  scene.materials.push_back({.name = "glass", .bsdf = Dielectric{1.5}});
+  scene.materials.push_back(
+      {.name = "tinted", .bsdf = Dielectric{1.5}, .interior = Medium{.absorption_per_m = 3}});
+  scene.materials.push_back({.name = "marble",
+                             .bsdf = Dielectric{1.4, 0.2},
+                             .interior = Medium{.absorption_per_m = 1, .scattering_per_m = 2000}});
+  for (int i = 1; i < 4; ++i) {
+    scene.objects.push_back(scene.objects.front());
+    scene.objects.back().name = scene.materials[i].name;
+    scene.objects.back().material = i;
+  }
+  scene.medium = fog(100, 0.7, 0.9);
+  scene.lights.push_back(PointLight{.position_m = {0, 0, 1}});
+  return scene;
+}
+
+TEST(SimplifiedScene, IsTheSceneItselfWithAllEffects) {
+  EXPECT_EQ(complaint_of(scene_of_all_kinds()), "");
+  const Scene all = simplified(scene_of_all_kinds(), EffectSet::all());
+  EXPECT_EQ(all.objects.size(), 4u);
+  EXPECT_EQ(all.lights.size(), 1u);
+  EXPECT_TRUE(all.medium);
+  EXPECT_EQ(all.materials[3].interior->scattering_per_m, 2000);
+  EXPECT_EQ(std::get<Dielectric>(all.materials[3].bsdf).roughness, 0.2);
+}
+
+TEST(SimplifiedScene, MakesTranslucentBodiesLambertOfEqualAlbedo) {
+  const Scene full = scene_of_all_kinds();
+  const Scene kept = simplified(full, EffectSet::all().without(Effect::subsurface));
+  ASSERT_EQ(kept.objects.size(), 4u);
+  EXPECT_EQ(std::get<Lambert>(kept.materials[3].bsdf).albedo,
+            diffuse_albedo(*full.materials[3].interior, 1.4));
+  EXPECT_FALSE(kept.materials[3].interior);
+  EXPECT_EQ(kept.materials[2].interior->absorption_per_m, 3) << "tinted glass is refraction's";
+  EXPECT_TRUE(std::holds_alternative<Dielectric>(kept.materials[2].bsdf));
+  EXPECT_EQ(std::get<Lambert>(kept.materials[0].bsdf).albedo, 0.6);
+  EXPECT_EQ(complaint_of(kept), "");
+}
+
+TEST(SimplifiedScene, LeavesOutClearBodiesWithoutRefraction) {
+  const Scene kept = simplified(scene_of_all_kinds(), EffectSet::all().without(Effect::refraction));
+  ASSERT_EQ(kept.objects.size(), 2u);
+  EXPECT_EQ(kept.objects[0].name, "ball");
+  EXPECT_EQ(kept.objects[1].name, "marble");
+  EXPECT_TRUE(kept.materials[kept.objects[1].material].interior);
+}
+
+TEST(SimplifiedScene, StandsInVacuumInTheDarkWithoutEffects) {
+  const Scene kept = simplified(scene_of_all_kinds(), {});
+  EXPECT_FALSE(kept.medium);
+  EXPECT_TRUE(kept.lights.empty());
+  ASSERT_EQ(kept.objects.size(), 2u);
+  EXPECT_TRUE(std::holds_alternative<Lambert>(kept.materials[kept.objects[1].material].bsdf));
+}
+
+TEST(SimplifiedScene, GivesDensityGridsTheirMajorants) {
+  Scene scene = scene_of_all_kinds();
+  const DensityGrid puff{{Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()},
+                         Eigen::Vector3i(1, 1, 2),
+                         {0.25f, 0.5f},
+                         {}};
+  scene.medium->density = puff;
+  scene.materials[3].interior->density = puff;
+  const Scene kept = simplified(scene, EffectSet::all());
+  const std::vector<float> majorants = {0.5f};
+  EXPECT_EQ(std::get<DensityGrid>(kept.medium->density).majorants, majorants);
+  EXPECT_EQ(std::get<DensityGrid>(kept.materials[3].interior->density).majorants, majorants);
+}
+
 TEST(Scene, GivesItsTrueSurfaceInTheWorld) {
   Scene scene = one_object();
   const Pose pose = exp((Vector6() << 0.1, 0.2, 0.3, 1, 2, 3).finished());
@@ -69,21 +154,72 @@ TEST(Scene, GivesItsTrueSurfaceInTheWorld) {
 TEST(Texture, MovesWithItsObject) {
   Scene scene = one_object(NoiseTexture{0.02, 4, 0.8});
   const Eigen::Vector3d x(0.03, -0.05, 0.08);
-  const double before = albedo_at(scene, 0, x);
+  const auto albedo = [&](const Eigen::Vector3d& x_in_world) {
+    return std::get<Lambert>(bsdf_at(scene, 0, x_in_world)).albedo;
+  };
+  const double before = albedo(x);
   const Pose pose = exp((Vector6() << 1, 2, 0.3, 1, 2, 3).finished());
   scene.objects[0].world_from_object = pose;
   // a slope of at most about 2 / finest wavelength (2.5 mm) carries roundings of 1e-15 m
-  EXPECT_NEAR(albedo_at(scene, 0, pose * x), before, 1e-11);
+  EXPECT_NEAR(albedo(pose * x), before, 1e-11);
 }
 
 TEST(Texture, CheckersAlternateWithTheirPeriod) {
   const CheckerTexture checker{0.02, 0.75};
   const auto at = [&](double x, double y, double z) { return texture_factor(checker, {x, y, z}); };
-  EXPECT_EQ(at(0.005, 0.005, 0.005), 1);
-  EXPECT_EQ(at(0.015, 0.005, 0.005), 0.25);
-  EXPECT_EQ(at(0.025, 0.005, 0.005), 1);
-  EXPECT_EQ(at(0.015, 0.015, 0.005), 1);
-  EXPECT_EQ(at(-0.005, 0.005, 0.005), 0.25);
+  EXPECT_EQ(at(0, 0, 0), 1);
+  EXPECT_EQ(at(0.01, 0, 0), 0.25);
+  EXPECT_EQ(at(0.02, 0, 0), 1);
+  EXPECT_EQ(at(0.01, 0.01, 0), 1);
+  EXPECT_EQ(at(-0.01, 0, 0), 0.25);
+  EXPECT_EQ(at(0.0049, 0, 0), 1);
+  EXPECT_EQ(at(0.0051, 0, 0), 0.25);
+}
+
+TEST(Texture, CheckersOnAFaceDoNotFlipByRounding) {
+  const CheckerTexture checker{0.02, 0.75};
+  for (int cell = -3; cell <= 3; ++cell)
+    for (const double offset : {-1e-12, 0.0, 1e-12})
+      EXPECT_EQ(texture_factor(checker, {0.001, 0.002, 0.01 * cell + offset}),
+                cell % 2 == 0 ? 1 : 0.25);
+}
+
+TEST(Texture, PictureLiesCentredOnThePlaneAndRepeats) {
+  ImageTexture picture{Image<float>(4, 2), 0.04};  // pixels of 10 mm
+  for (int i = 0; i < 8; ++i) picture.factors.pixels[i] = static_cast<float>(i) / 8;
+  const auto at = [&](double x, double y) { return texture_factor(picture, {x, y, 0.3}); };
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 4; ++column)
+      for (const int turn : {-2, 0, 3})
+        EXPECT_NEAR(at(0.01 * column - 0.015 + 0.04 * turn, 0.005 - 0.01 * row - 0.02 * turn),
+                    (4 * row + column) / 8.0, 1e-12);
+  EXPECT_NEAR(at(-0.01, 0.005), 0.5 / 8, 1e-12) << "half way along the first row";
+  EXPECT_NEAR(at(-0.015, 0), 2.0 / 8, 1e-12) << "half way down the first column";
+  EXPECT_NEAR(at(0.02, 0.005), 1.5 / 8, 1e-12) << "from the last column over to the first";
+}
+
+TEST(Scene, RefusesMaterialsThatCannotBe) {
+  Scene scene = one_object(NoiseTexture{});
+  scene.materials[0].bsdf = Conductor{};
+  EXPECT_NE(complaint_of(scene).find("materials/clay/texture multiplies"), std::string::npos);
+  scene.materials[0].bsdf = Dielectric{};
+  EXPECT_NE(complaint_of(scene).find("materials/clay/texture multiplies"), std::string::npos);
+  scene.materials[0].bsdf = Plastic{};
+  EXPECT_EQ(complaint_of(scene), "");
+  scene.materials[0].interior = Medium{};
+  EXPECT_NE(complaint_of(scene).find("materials/clay/interior lies"), std::string::npos);
+  scene = one_object();
+  scene.materials[0].bsdf = Dielectric{};
+  scene.materials[0].interior = Medium{};
+  EXPECT_EQ(complaint_of(scene), "");
+  scene.materials[0].bsdf = Dielectric{0.5};
+  EXPECT_NE(complaint_of(scene).find("materials/clay/index is 0.5"), std::string::npos);
+  scene = one_object(ImageTexture{});
+  EXPECT_NE(complaint_of(scene).find("clay/texture/image has no pixels"), std::string::npos);
+  scene = one_object(ImageTexture{Image<float>(1, 1, 1.5f), 0.1});
+  EXPECT_NE(complaint_of(scene).find("clay/texture/image is 1.5"), std::string::npos);
+  scene = one_object(ImageTexture{Image<float>(1, 1, 0.5f), 0});
+  EXPECT_NE(complaint_of(scene).find("clay/texture/width_m is 0"), std::string::npos);
 }
 
 TEST(Texture, NoiseIsUniformOnItsLatticeAndSmoothBetween) {
