@@ -24,7 +24,13 @@ struct Decoder {
     return with_normals(acquire_phase(frames, options.phase));
   }
   Scan operator()(const Waveforms& frames) const {
-    return with_normals(acquire_waveform(frames, options.waveform));
+    Scan scan = acquire_waveform(frames, options.waveform);
+    std::vector<Eigen::Vector3d> origins;
+    if (!frames.scanner_from_ray.empty())
+      for (const std::uint32_t ray : scan.ray)
+        origins.push_back(frames.scanner_from_ray[ray].translation());
+    estimate_normals(scan, options.normals, origins);
+    return scan;
   }
 
  private:

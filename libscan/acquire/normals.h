@@ -15,8 +15,8 @@ struct NormalOptions {
 // and turns each towards scan.viewpoint. With a grid the nearest are those of a square of
 // rays without a jump in depth, else the nearest in space. A neighbourhood that fixes no plane is
 // widened twice, then gives (0, 0, 0).
-// For a laser-line scan, whose viewpoint moves, `viewpoints` has one per point; empty:
-// scan.viewpoint for all.
+// For a scan whose viewpoint moves (laser line, moving lidar) `viewpoints` has one per point;
+// empty: scan.viewpoint for all.
 void estimate_normals(Scan& scan, const NormalOptions& options = {},
                       std::span<const Eigen::Vector3d> viewpoints = {});
 

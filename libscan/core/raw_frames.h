@@ -91,15 +91,22 @@ struct WaveformCalibration {
   double window_start_s = 0;    // first sample, after the middle of the emitted pulse
   double pulse_sigma_s = 2e-9;  // standard deviation of the Gaussian pulse as received
   Sensor sensor;
+  // Range walk: an echo of N electrons comes range_walk_s log10(N / range_walk_electrons) late.
+  double range_walk_s = 0;
+  double range_walk_electrons = 1000;
 };
 
-// Ray origin is the scanner's origin. Sample i of ray r stands at samples[r * samples_per_ray + i].
+// Sample i of ray r stands at samples[r * samples_per_ray + i]; the ray's record begins
+// first_sample[r] samples behind the window's start. Ray origin is the scanner's origin when the
+// ray was fired.
 struct Waveforms {
   WaveformCalibration calibration;
   RayGrid grid;
-  std::vector<Eigen::Vector3d> directions;  // unit, scanner frame, one per ray
+  std::vector<Eigen::Vector3d> directions;  // unit, frame of the scanner as it fired, one per ray
   std::uint32_t samples_per_ray = 0;
-  std::vector<std::uint16_t> samples;  // DN
+  std::vector<std::uint16_t> samples;       // DN
+  std::vector<std::uint32_t> first_sample;  // empty: 0 for all
+  std::vector<Pose> scanner_from_ray;  // scan frame from the scanner as it fired; empty: identity
 };
 
 using RawFrames = std::variant<StripeImages, ImagePair, PhaseTaps, Waveforms>;

@@ -184,6 +184,12 @@ WaveformSetup read_waveform_calibration(const std::filesystem::path& path) {
         positive(reader, "sample_interval", reader.time_s("sample_interval"));
     calibration.window_start_s = reader.time_s("window_start", calibration.window_start_s);
     calibration.pulse_sigma_s = positive(reader, "pulse_sigma", reader.time_s("pulse_sigma"));
+    calibration.range_walk_s = reader.time_s("range_walk", calibration.range_walk_s);
+    calibration.range_walk_electrons =
+        positive(reader, "range_walk_electrons",
+                 reader.number("range_walk_electrons", calibration.range_walk_electrons));
+    setup.is_gated = reader.boolean("gated", false);
+    setup.is_moving = reader.boolean("moving", false);
     setup.grid.rows = static_cast<std::uint32_t>(whole(reader, "rows", 0, largest, &zero));
     setup.grid.columns = static_cast<std::uint32_t>(whole(reader, "columns", 0, largest, &zero));
     return setup;
@@ -234,6 +240,10 @@ ordered_json calibration_json(const Waveforms& frames) {
           {"sample_interval_s", c.sample_interval_s},
           {"window_start_s", c.window_start_s},
           {"pulse_sigma_s", c.pulse_sigma_s},
+          {"range_walk_s", c.range_walk_s},
+          {"range_walk_electrons", c.range_walk_electrons},
+          {"gated", !frames.first_sample.empty()},
+          {"moving", !frames.scanner_from_ray.empty()},
           {"rows", frames.grid.rows},
           {"columns", frames.grid.columns}};
 }

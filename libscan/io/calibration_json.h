@@ -19,6 +19,8 @@ struct LaserLineSetup {
 struct WaveformSetup {
   WaveformCalibration calibration;
   RayGrid grid;
+  bool is_gated = false;   // first_samples.npy says where each ray's record begins
+  bool is_moving = false;  // poses.npy says where the scanner was at each ray
 };
 
 // scan::Error (input) names file and key; "device" must be the one asked for.

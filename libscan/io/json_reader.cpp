@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 using Units = std::map<std::string, double>;
-const Units length_units = {{"_m", 1}, {"_mm", 1e-3}, {"_um", 1e-6}};
+const Units length_units = {{"_m", 1}, {"_mm", 1e-3}, {"_um", 1e-6}, {"_nm", 1e-9}};
 const Units angle_units = {{"_rad", 1}, {"_deg", rad_from_deg(1)}};
 const Units time_units = {{"_s", 1}, {"_ms", 1e-3}, {"_us", 1e-6}, {"_ns", 1e-9}};
 const Units frequency_units = {{"_hz", 1}, {"_mhz", 1e6}};
@@ -37,7 +37,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
         d[i][j] = i + j;
         continue;
       }
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      d[i][j] =
+          std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
       const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
       if (swapped) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
@@ -82,7 +83,9 @@ const json* JsonReader::find(std::string_view key) {
   return found == object_->end() ? nullptr : &*found;
 }
 
-bool JsonReader::has(std::string_view key) { return find(key) != nullptr; }
+bool JsonReader::has(std::string_view key) {
+  return find(key) != nullptr;
+}
 
 bool JsonReader::has_quantity(std::string_view name) const {
   for (const Units* units : {&length_units, &angle_units, &time_units, &frequency_units})

@@ -18,7 +18,7 @@
 namespace scan {
 
 // A view on one JSON object. Each getter marks its key as known; `finish()` refuses what is left.
-// Lengths carry their unit in the key: length_m("radius") reads radius_mm, radius_m or radius_um
+// Lengths carry their unit in the key: length_m("radius") reads radius_m, _mm, _um or _nm
 // and returns metres; angle_rad reads _deg or _rad; time_s reads _s, _ms, _us or _ns; frequency_hz
 // reads _hz or _mhz. Without a default the key is required.
 class JsonReader {
@@ -26,8 +26,8 @@ class JsonReader {
   // `place` is how messages name this object: a file name, then a JSON pointer.
   JsonReader(const nlohmann::json& object, std::string place);
 
-  bool has(std::string_view key);                   // exactly this key, known from now on
-  bool has_quantity(std::string_view name) const;   // this name with any unit
+  bool has(std::string_view key);                  // exactly this key, known from now on
+  bool has_quantity(std::string_view name) const;  // this name with any unit
 
   double number(std::string_view key);
   double number(std::string_view key, double otherwise);

@@ -133,14 +133,57 @@ void read_directions(const std::filesystem::path& path, Waveforms& frames) {
   }
 }
 
+void check_rays(const std::filesystem::path& path, std::size_t count, std::size_t rays) {
+  if (count == rays) return;
+  throw Error(Trouble::input, path.string() + ": has " + std::to_string(count) +
+                                  " rays, directions.npy has " + std::to_string(rays));
+}
+
+void read_first_samples(const std::filesystem::path& path, Waveforms& frames) {
+  const NumberArray list = read_npy(path);
+  check_rays(path, list.values.size(), frames.directions.size());
+  for (const double value : list.values) {
+    if (!(value >= 0 && value <= 1 << 30) || value != std::floor(value))
+      throw Error(Trouble::input, path.string() + ": holds " + shortest(value) +
+                                      ", must be whole numbers from 0 to 2^30");
+    frames.first_sample.push_back(static_cast<std::uint32_t>(value));
+  }
+}
+
+// Each row holds the upper three rows of a rigid motion's matrix.
+void read_ray_poses(const std::filesystem::path& path, Waveforms& frames) {
+  const NumberArray table = read_table(path);
+  if (table.shape[1] != 12)
+    throw Error(Trouble::input, path.string() + ": a pose has twelve numbers, not " +
+                                    std::to_string(table.shape[1]));
+  check_rays(path, table.shape[0], frames.directions.size());
+  for (std::size_t i = 0; i < table.shape[0]; ++i) {
+    using Rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+    Pose pose = Pose::Identity();
+    pose.affine() = Eigen::Map<const Rows>(&table.values[12 * i]);
+    const Eigen::Matrix3d& turn = pose.linear();
+    const double error =
+        (turn.transpose() * turn - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    if (!(error < 1e-6) || !(turn.determinant() > 0) || !pose.translation().allFinite())
+      throw Error(Trouble::input,
+                  path.string() + ": pose " + std::to_string(i) + " is no rigid motion");
+    frames.scanner_from_ray.push_back(pose);
+  }
+}
+
 Waveforms read_waveforms(const Paths& inputs, const std::filesystem::path& calibration) {
   const WaveformSetup setup = read_waveform_calibration(calibration);
   Waveforms frames;
   frames.calibration = setup.calibration;
   frames.grid = setup.grid;
-  const Paths paths = files_of(inputs, {"samples.npy", "directions.npy"});
+  std::vector<std::string> names = {"samples.npy", "directions.npy"};
+  if (setup.is_gated) names.push_back("first_samples.npy");
+  if (setup.is_moving) names.push_back("poses.npy");
+  const Paths paths = files_of(inputs, names);
   read_samples(paths[0], frames);
   read_directions(paths[1], frames);
+  if (setup.is_gated) read_first_samples(paths[2], frames);
+  if (setup.is_moving) read_ray_poses(paths.back(), frames);
   const std::size_t rays = frames.directions.size();
   if (frames.samples.size() != rays * frames.samples_per_ray)
     throw Error(Trouble::input, paths[0].string() + ": has " +
@@ -177,6 +220,14 @@ void write_frames(const std::filesystem::path& folder, const Waveforms& frames) 
   const std::size_t rays = frames.directions.size();
   write_npy(folder / "samples.npy", {rays, frames.samples_per_ray}, frames.samples);
   write_npy(folder / "directions.npy", {rays, 3}, directions);
+  if (!frames.first_sample.empty())
+    write_npy(folder / "first_samples.npy", {rays},
+              std::vector<double>(frames.first_sample.begin(), frames.first_sample.end()));
+  std::vector<double> poses;
+  for (const Pose& pose : frames.scanner_from_ray)
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column) poses.push_back(pose(row, column));
+  if (!poses.empty()) write_npy(folder / "poses.npy", {rays, 12}, poses);
 }
 
 }  // namespace

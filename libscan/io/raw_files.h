@@ -11,11 +11,14 @@
 //   stereo        width_px, height_px, focal_px, cx_px, cy_px, [doffs_px], baseline_mm,
 //                 [min_disparity_px], disparities_px
 //   phase         camera, sensor, frequencies_mhz: [...], [max_range_m]
-//   waveform      sensor, sample_interval_ns, [window_start_ns], pulse_sigma_ns, [rows, columns]
+//   waveform      sensor, sample_interval_ns, [window_start_ns], pulse_sigma_ns, [rows, columns],
+//                 [range_walk_ns, range_walk_electrons], ["gated": true], ["moving": true]
 // Keys in brackets have the defaults of libscan/core/raw_frames.h.
 //
 // Files of a folder: 000.png, 001.png, ... (laser-line); left.png, right.png; frequency_0_tap_0.png
-// to frequency_N_tap_3.png (phase); samples.npy (rays x samples), directions.npy (rays x 3).
+// to frequency_N_tap_3.png (phase); samples.npy (rays x samples), directions.npy (rays x 3),
+// first_samples.npy (rays) if gated, poses.npy (rays x 12, the upper three rows of each
+// scanner_from_ray) if moving.
 #pragma once
 
 #include <filesystem>
@@ -34,11 +37,12 @@ std::string_view kind_of(const RawFrames& frames);
 void write_raw_frames(const std::filesystem::path& folder, const RawFrames& frames);
 
 // Reads what write_raw_frames wrote, or a real device's files: `inputs` in order (laser-line: one
-// image per step; stereo: left, right; phase: four taps per frequency; waveform: samples.npy and
-// directions.npy), or one folder that holds them under the names that write_raw_frames uses.
-// `calibration` is JSON as above, or Middlebury's calib.txt for stereo (cam0, cam1, doffs, baseline
-// in mm, width, height, ndisp). scan::Error (input) names file and field; pixels above the sensor's
-// bits, images of another size than the camera's and wrong counts are refused.
+// image per step; stereo: left, right; phase: four taps per frequency; waveform: samples.npy,
+// directions.npy and what else it has), or one folder that holds them under the names that
+// write_raw_frames uses. `calibration` is JSON as above, or Middlebury's calib.txt for stereo
+// (cam0, cam1, doffs, baseline in mm, width, height, ndisp). scan::Error (input) names file and
+// field; pixels above the sensor's bits, images of another size than the camera's and wrong counts
+// are refused.
 RawFrames read_raw_frames(std::string_view kind, const std::vector<std::filesystem::path>& inputs,
                           const std::filesystem::path& calibration);
 

@@ -144,11 +144,72 @@ TEST(Waveform, TakesTheFirstOfTwoEchoes) {
     }
 }
 
+// Light that falls from the record's first sample on, as from fog before the lens, is no echo; the
+// wall behind it is found to its rounding (above) and what the falling light's slope pulls: at 18
+// m, 280 exp(-12) e.
+TEST(Waveform, LooksPastLightThatTheRecordBeginsWith) {
+  const Device device;
+  Waveforms frames = record(device, {{{15, 800}}});
+  for (std::uint32_t i = 0; i < device.samples; ++i)
+    frames.samples[i] += static_cast<std::uint16_t>(std::lround(280 * std::exp(-0.15 * i)));
+  const Scan scan = acquire_waveform(frames);
+  ASSERT_EQ(scan.cloud.size(), 1u);
+  EXPECT_NEAR(scan.cloud.points[0].norm(), 15, half_c * 2e-9 * (3.0 / 800 + 0.01));
+}
+
 // Closer than a pulse they are one echo, between the two: the energy-weighted place.
 TEST(Waveform, MergesEchoesWithinAPulse) {
   const Scan scan = acquire_waveform(record({}, {{{8, 1000}, {8.1, 1000}}}));
   ASSERT_EQ(scan.cloud.size(), 1u);
   EXPECT_NEAR(scan.cloud.points[0].norm(), 8.05, 1e-3);
+}
+
+// Equal echoes d apart leave humps of sigma' = sqrt(2) sigma in the correlation; at d = 3.6 sigma
+// its valley lies at 2 exp(-d^2 / 8 sigma'^2) = 0.89 of a single hump's top, the tops at 1 +
+// exp(-d^2 / 2 sigma'^2) = 1.04: 0.15 of 5300 e, over six times their noise, sqrt(5300) e. Range
+// errors: rounding by 1/2 in each reading moves a single pulse by 3 s / A (above); two fits at 3.6
+// sigma are correlated by exp(-(3.6 / 2)^2) = 0.04, three times that is more than enough.
+TEST(Waveform, PartsTwoEqualEchoesBeyondTheirWidth) {
+  const Device device{.pulse_s = 1.5e-9};
+  std::vector<std::vector<Echo>> rays;
+  for (double separation = 3.6; separation < 8; separation += 0.05)
+    rays.push_back({{8.07, 2000}, {8.07 + separation * 1.5e-9 * half_c, 2000}});
+  for (const PulseMethod method : methods) {
+    const Scan scan = acquire_waveform(record(device, rays), {.pulse = method});
+    ASSERT_EQ(scan.cloud.size(), rays.size()) << static_cast<int>(method);
+    const double bound_s = 1.5e-9 * (9.0 / 2000 + (method == PulseMethod::centroid) * 5e-3);
+    for (const Eigen::Vector3d& point : scan.cloud.points)
+      EXPECT_NEAR(point.norm(), 8.07, half_c * bound_s) << static_cast<int>(method);
+  }
+}
+
+// A record that begins later gives the same point; the pose of the ray carries it to the scan
+// frame.
+TEST(Waveform, PlacesGatesAndMovingRays) {
+  const Waveforms whole = record({}, {{{8, 1000}}});
+  Waveforms gate = whole;
+  gate.samples.assign(whole.samples.begin() + 13, whole.samples.begin() + 63);
+  gate.samples_per_ray = 50;
+  gate.first_sample = {13};
+  gate.scanner_from_ray = {exp((Vector6() << 0.3, -0.2, 0.5, 1, 2, 3).finished())};
+  const Scan a = acquire_waveform(whole), b = acquire_waveform(gate);
+  ASSERT_EQ(a.cloud.size(), 1u);
+  ASSERT_EQ(b.cloud.size(), 1u);
+  const Pose& pose = gate.scanner_from_ray[0];
+  // The background's level differs by the rounding of 50 or 120 samples.
+  EXPECT_LT((b.cloud.points[0] - pose * a.cloud.points[0]).norm(), 1e-5);
+  const Eigen::Vector3d along = pose.linear() * gate.directions[0];
+  EXPECT_NEAR(along.dot(b.cloud.covariances[0] * along), std::pow(b.cloud.sigma_m[0], 2), 1e-15);
+}
+
+// -0.2 ns per decade over 1000 e: an echo of 1e5 e comes 0.4 ns early and is put back.
+TEST(Waveform, TakesBackTheRangeWalk) {
+  const double height_e = 1e5 / (2 * std::sqrt(2 * M_PI));
+  const double early_m = 0.4e-9 * half_c;
+  Waveforms frames = record({}, {{{8 - early_m, height_e}}});
+  EXPECT_NEAR(acquire_waveform(frames).cloud.points[0].norm(), 8 - early_m, 1e-4);
+  frames.calibration.range_walk_s = -0.2e-9;
+  EXPECT_NEAR(acquire_waveform(frames).cloud.points[0].norm(), 8, 1e-4);
 }
 
 std::string only_miss(const Waveforms& frames) {
@@ -207,6 +268,15 @@ TEST(Waveform, RefusesBrokenFrames) {
   EXPECT_THROW(acquire_waveform(frames), Error);
   frames = record({}, {{}});
   frames.grid = {2, 2};
+  EXPECT_THROW(acquire_waveform(frames), Error);
+  frames = record({}, {{}});
+  frames.first_sample = {1, 2};
+  EXPECT_THROW(acquire_waveform(frames), Error);
+  frames = record({}, {{}});
+  frames.scanner_from_ray.resize(3, Pose::Identity());
+  EXPECT_THROW(acquire_waveform(frames), Error);
+  frames = record({}, {{}});
+  frames.calibration.range_walk_electrons = 0;
   EXPECT_THROW(acquire_waveform(frames), Error);
   frames = record({}, {{}});
   frames.calibration.pulse_sigma_s = 0;

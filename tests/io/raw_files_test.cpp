@@ -142,6 +142,34 @@ TEST(RawFiles, WaveformsComeBackToTheBit) {
   EXPECT_EQ(a.directions, b.directions);
   EXPECT_EQ(a.samples_per_ray, b.samples_per_ray);
   EXPECT_EQ(a.samples, b.samples);
+  EXPECT_TRUE(b.first_sample.empty());
+  EXPECT_TRUE(b.scanner_from_ray.empty());
+}
+
+TEST(RawFiles, GatedWaveformsOfAMovingScannerComeBackToTheBit) {
+  const TemporaryFolder folder;
+  Waveforms a = waveforms();
+  a.calibration.range_walk_s = -3e-10;
+  a.calibration.range_walk_electrons = 250;
+  for (int i = 0; i < 6; ++i) {
+    a.first_sample.push_back(17 * i);
+    a.scanner_from_ray.push_back(exp((Vector6() << 0.1 * i, 0.2, -0.3, 1, i, 3).finished()));
+  }
+  const Waveforms b = round_trip(folder, a);
+  EXPECT_EQ(a.calibration.range_walk_s, b.calibration.range_walk_s);
+  EXPECT_EQ(a.calibration.range_walk_electrons, b.calibration.range_walk_electrons);
+  EXPECT_EQ(a.first_sample, b.first_sample);
+  ASSERT_EQ(b.scanner_from_ray.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_EQ(a.scanner_from_ray[i].matrix(), b.scanner_from_ray[i].matrix());
+  const auto said = [&] {
+    return error_of(
+        [&] { read_raw_frames("waveform", {folder.path()}, folder / "calibration.json"); });
+  };
+  write_npy(folder / "poses.npy", {6, 12}, std::vector<double>(72, 1.0));
+  EXPECT_NE(said().find("pose 0 is no rigid motion"), std::string::npos);
+  write_npy(folder / "first_samples.npy", {2}, std::vector<double>{1, 2});
+  EXPECT_NE(said().find("has 2 rays"), std::string::npos);
 }
 
 TEST(RawFiles, MiddleburyCalibrationFollowsItsConvention) {
