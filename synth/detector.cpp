@@ -32,7 +32,7 @@ std::uint16_t read_pixel(const Sensor& sensor, const DetectorEffects& effects, d
     electrons += sensor.read_noise_e * random.normal();
   const Sensor delivered = delivered_sensor(sensor, effects);
   const double dn = electrons / delivered.gain_e_per_dn + delivered.offset_dn;
-  const double largest = std::ldexp(1.0, delivered.bits) - 1;
+  const double largest = (1 << delivered.bits) - 1;
   return static_cast<std::uint16_t>(std::round(std::clamp(dn, 0.0, largest)));
 }
 

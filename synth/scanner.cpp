@@ -4,6 +4,10 @@
 
 namespace scan::synth {
 
+double wavelength_m(const Scanner& scanner) {
+  return std::visit([](const auto& s) { return s.wavelength_m; }, scanner);
+}
+
 void check(const Scanner& scanner) {
   std::visit([](const auto& s) { check(s); }, scanner);
 }

@@ -20,6 +20,9 @@ namespace scan::synth {
 
 using Scanner = std::variant<LaserLine, StereoPair, PhaseCamera, PulsedLidar>;
 
+// Of the device's own light.
+double wavelength_m(const Scanner& scanner);
+
 // Throws scan::Error (input) naming field, value and limit.
 void check(const Scanner& scanner);
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "libscan/core/error.h"
+#include "libscan/core/mesh.h"
 #include "libscan/core/random.h"
 
 namespace scan::synth {
@@ -102,6 +103,26 @@ Eigen::Vector3d random_direction(RandomStream& random) {
   return Eigen::Vector3d(x, y, z).normalized();
 }
 
+// The solid angle of a triangle seen from the origin (Van Oosterom and Strackee 1983, eq. 8).
+double solid_angle_sr(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                      const Eigen::Vector3d& c) {
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  const double above = a.dot(b.cross(c));
+  const double below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+  return 2 * std::atan2(above, below);
+}
+
+bool is_inside(const Shape& shape, const Eigen::Vector3d& x) {
+  return field(shape, x).value_m < 0;
+}
+
+bool is_inside(const Mesh& mesh, const Eigen::Vector3d& x) {
+  double whole_sr = 0;
+  for (const auto& [i, j, k] : mesh.triangles)
+    whole_sr += solid_angle_sr(mesh.vertices[i] - x, mesh.vertices[j] - x, mesh.vertices[k] - x);
+  return whole_sr > 2 * std::numbers::pi && edge_census(mesh).boundary_edges == 0;
+}
+
 }  // namespace
 
 void check(const Viewpoints& viewpoints) {
@@ -130,6 +151,20 @@ std::vector<Pose> guessed_poses(const Viewpoints& viewpoints, std::uint64_t seed
     poses[i].translation() += distance_m * shift;
   }
   return poses;
+}
+
+void check_standing(const Scene& scene, std::span<const Pose> world_from_scanner) {
+  for (std::size_t i = 0; i < world_from_scanner.size(); ++i)
+    for (const Object& object : scene.objects) {
+      if (std::holds_alternative<Dielectric>(scene.materials[object.material].bsdf)) continue;
+      const Eigen::Vector3d x_in_object =
+          object.world_from_object.inverse() * world_from_scanner[i].translation();
+      if (std::visit([&](const auto& geometry) { return is_inside(geometry, x_in_object); },
+                     object.geometry))
+        throw Error(Trouble::input, "viewpoints: scanner " + std::to_string(i) +
+                                        " stands inside the object '" + object.name +
+                                        "', must be outside");
+    }
 }
 
 }  // namespace scan::synth

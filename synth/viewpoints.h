@@ -4,10 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <variant>
 #include <vector>
 
-#include "libscan/core/pose.h"
+#include "synth/scene.h"
 
 namespace scan::synth {
 
@@ -52,6 +53,11 @@ struct Viewpoints {
 
 // Throws scan::Error (input) naming field, value and limit.
 void check(const Viewpoints& viewpoints);
+
+// Throws scan::Error (input) if one of the scanners would stand inside an opaque object: inside a
+// shape, or inside a closed mesh by its winding number (Jacobson et al. 2013).
+void check_standing(const Scene& scene, std::span<const Pose> world_from_scanner);
+
 std::vector<Pose> true_poses(const Viewpoints& viewpoints);  // world_from_scanner
 std::vector<Pose> guessed_poses(const Viewpoints& viewpoints, std::uint64_t seed);
 

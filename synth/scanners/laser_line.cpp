@@ -2,45 +2,140 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "synth/scanners/laser_line.h"
 
+#include <algorithm>
 #include <numbers>
+#include <optional>
 
+#include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
-#include "synth/scanners/laser_line_optics.h"
+#include "synth/scanners/laser_line_blooming.h"
+#include "synth/scanners/laser_line_exposure.h"
 #include "synth/scanners/limits.h"
 
 namespace scan::synth {
 namespace {
 
-// Mean over sub_rays x sub_rays places in the pixel.
-double pixel_electrons(const LaserView& view, int column, int row) {
-  const int n = view.scanner.sub_rays;
-  double sum = 0;
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
-      const Eigen::Vector2d place(column + (j + 0.5) / n - 0.5, row + (i + 0.5) / n - 0.5);
-      if (const auto ray = ray_through(view.scanner.camera, place)) sum += view.electrons(*ray);
-    }
-  return sum / (n * n);
+// A step's expected light: direct, and where paths add to it.
+struct StepLight {
+  Image<std::uint8_t> lit;
+  Image<std::uint8_t> brightened;  // empty without paths
+  Image<double> laser_e, other_e;
+};
+
+StepLight direct_light(const LaserExposure& exposure) {
+  const LaserPaths* paths = exposure.sweep().paths;
+  StepLight light{.lit = exposure.lit()};
+  light.laser_e = light.other_e = Image<double>(light.lit.width, light.lit.height);
+  if (paths && !paths->direct_is_straight) return light;
+  parallel_for(
+      static_cast<std::size_t>(light.lit.height),
+      [&](std::size_t r) {
+        const int row = static_cast<int>(r);
+        for (int column = 0; column < light.lit.width; ++column) {
+          if (!light.lit(column, row)) continue;
+          const PixelLight pixel = exposure.direct(column, row);
+          light.laser_e(column, row) = pixel.laser_e;
+          light.other_e(column, row) = pixel.other_e;
+        }
+      },
+      16);
+  return light;
 }
 
-Image<std::uint16_t> render_step(const LaserView& view, int step, const RenderAddress& address,
-                                 const DetectorEffects& effects) {
-  const Camera& camera = view.scanner.camera;
-  const Image<std::uint8_t> band = lit_band(view);
+// Expected electrons of a row, all effects of light included.
+std::vector<double> row_light(const LaserExposure& exposure, const StepLight& light, int row,
+                              PathTally& tally) {
+  const LaserSweep& sweep = exposure.sweep();
+  const int width = light.lit.width;
+  const bool all_by_paths = sweep.paths && !sweep.paths->direct_is_straight;
+  std::vector<double> row_e(width, 0), other_e(width, 0);
+  int first = width, end = 0;
+  for (int column = 0; column < width; ++column) {
+    const bool is_lit = light.lit(column, row);
+    const bool by_paths =
+        sweep.paths && (light.brightened(column, row) || (is_lit && all_by_paths));
+    if (!is_lit && !by_paths) continue;
+    first = std::min(first, column);
+    end = column + 1;
+    PixelLight pixel{light.laser_e(column, row), light.other_e(column, row)};
+    if (by_paths) {
+      const PixelLight more = exposure.by_paths(column, row, pixel, tally);
+      pixel.laser_e += more.laser_e;
+      pixel.other_e += more.other_e;
+    }
+    row_e[column] = pixel.laser_e;
+    other_e[column] = pixel.other_e;
+  }
+  if (sweep.speckle.contrast > 0 && first < end)
+    mottle(sweep.speckle, sweep.address, exposure.step(), row, first,
+           std::span(row_e).subspan(first, end - first));
+  for (int column = first; column < end; ++column) row_e[column] += other_e[column];
+  return row_e;
+}
+
+// Charge before numbers: its shot noise comes first, then what full pixels spill.
+void spill(const LaserSweep& sweep, std::span<double> row_e, RandomStream& random) {
+  if (sweep.detector.shot_noise)
+    for (double& e : row_e) e = static_cast<double>(random.poisson(e));
+  bloom(row_e, sweep.scanner.sensor.full_well_e, sweep.scanner.blooming_share);
+}
+
+Image<std::uint16_t> render_step(const LaserExposure& exposure, PathTally& tally) {
+  const LaserSweep& sweep = exposure.sweep();
+  const Camera& camera = sweep.scanner.camera;
+  const bool blooms = sweep.scanner.blooming_share > 0;
+  DetectorEffects reading = sweep.detector;
+  reading.shot_noise = reading.shot_noise && !blooms;
+  StepLight light = direct_light(exposure);
+  if (sweep.paths) light.brightened = exposure.brightened(light.lit, light.laser_e, tally);
   Image<std::uint16_t> image(camera.width_px, camera.height_px);
+  std::vector<PathTally> tallies(camera.height_px);
   parallel_for(
       static_cast<std::size_t>(camera.height_px),
       [&](std::size_t r) {
         const int row = static_cast<int>(r);
-        RandomStream random(address.seed, address.scan,
-                            static_cast<std::uint64_t>(step) * camera.height_px + r);
-        for (int column = 0; column < camera.width_px; ++column) {
-          const double expected_e = band(column, row) ? pixel_electrons(view, column, row) : 0;
-          image(column, row) = read_pixel(view.scanner.sensor, effects, expected_e, random);
-        }
+        RandomStream random(sweep.address.seed, sweep.address.scan,
+                            static_cast<std::uint64_t>(exposure.step()) * camera.height_px + r);
+        std::vector<double> row_e = row_light(exposure, light, row, tallies[r]);
+        if (blooms) spill(sweep, row_e, random);
+        for (int column = 0; column < camera.width_px; ++column)
+          image(column, row) = read_pixel(sweep.scanner.sensor, reading, row_e[column], random);
       },
       16);
+  for (const PathTally& each : tallies) tally += each;
   return image;
+}
+
+LaserLineCalibration calibration_of(const LaserLine& device, const DetectorEffects& reading) {
+  const LaserSheet plane = laser_sheet(with_effects(device, {}));
+  return {.camera = device.camera,
+          .plane_normal = plane.normal,
+          .plane_offset_m = plane.offset_m,
+          .sensor = delivered_sensor(device.sensor, reading),
+          .min_range_m = device.min_range_m,
+          .max_range_m = device.max_range_m};
+}
+
+void check_imperfections(const LaserLine& s) {
+  require_positive("laser_line/wavelength_m", s.wavelength_m);
+  require_within("laser_line/wavelength_m", s.wavelength_m, 0, 1e-3);
+  if (s.beam_quality != 0) require_within("laser_line/beam_quality", s.beam_quality, 1, 1e6);
+  require_finite("laser_line/plane_bow_m", s.plane_bow_m);
+  require_finite("laser_line/plane_shift_m", s.plane_shift_m);
+  const double right_angle_rad = std::numbers::pi / 2;
+  require_within("laser_line/triangulation_rad plus plane_turn_rad",
+                 s.triangulation_rad + s.plane_turn_rad, 1e-6, right_angle_rad - 1e-6);
+  require_within("laser_line/aperture_m", s.aperture_m, 0, 1);
+  require_within("laser_line/lens_focus_m", s.lens_focus_m, 0, 1e9);
+  require_within("laser_line/speckle_contrast", s.speckle_contrast, 0, 1);
+  if (s.speckle_contrast > 0) {
+    require_within("laser_line/speckle_contrast", s.speckle_contrast, 0.01, 1);
+    require_positive("laser_line/aperture_m", s.aperture_m);
+  }
+  require_within("laser_line/exposure_share", s.exposure_share, 0, 1);
+  require_within("laser_line/blooming_share", s.blooming_share, 0, 1);
+  require_within("laser_line/ambient_electrons", s.ambient_electrons, 0, 1e12);
+  require_within("laser_line/electrons_per_w_m2", s.electrons_per_w_m2, 0, 1e15);
 }
 
 }  // namespace
@@ -64,33 +159,39 @@ void check(const LaserLine& s) {
   require_within("laser_line/min_range_m", s.min_range_m, 0, s.max_range_m);
   require_positive("laser_line/max_range_m", s.max_range_m);
   require_size("laser_line/images", 1.0 * s.steps * s.camera.width_px * s.camera.height_px);
+  check_imperfections(s);
 }
 
 Rendering render(const LaserLine& device, const RayCaster& caster, const Pose& world_from_scanner,
                  const RenderAddress& address, const EffectSet& effects) {
   check(device);
-  LaserLine scanner = device;
-  if (!effects.has(Effect::footprint)) scanner.sub_rays = 1;
-  const DetectorEffects reading = detector_effects(effects);
-  const LaserSheet sheet = laser_sheet(scanner);
+  const LaserLine scanner = with_effects(device, effects);
+  std::optional<LaserPaths> paths;
+  if (needs_paths(scanner, caster.scene(), effects)) paths.emplace(caster, effects);
+  const LaserSweep sweep{.scanner = scanner,
+                         .sheet = laser_sheet(scanner),
+                         .samples = camera_samples(scanner),
+                         .speckle = effects.has(Effect::speckle) ? speckle_of(device) : Speckle{},
+                         .address = address,
+                         .detector = detector_effects(effects),
+                         .paths = paths ? &*paths : nullptr};
   StripeImages frames;
-  frames.calibration = {.camera = scanner.camera,
-                        .plane_normal = sheet.normal,
-                        .plane_offset_m = sheet.offset_m,
-                        .sensor = delivered_sensor(scanner.sensor, reading),
-                        .min_range_m = scanner.min_range_m,
-                        .max_range_m = scanner.max_range_m};
+  frames.calibration = calibration_of(device, sweep.detector);
   frames.scanner_from_camera = scanner_from_camera(scanner);
   frames.images.resize(scanner.steps);
+  std::vector<PathTally> tallies(scanner.steps);
   parallel_for(
       frames.images.size(),
       [&](std::size_t step) {
-        const LaserView view{scanner, sheet, caster,
+        const LaserView view{scanner, sweep.sheet, caster,
                              world_from_scanner * frames.scanner_from_camera[step]};
-        frames.images[step] = render_step(view, static_cast<int>(step), address, reading);
+        const LaserExposure exposure(sweep, view, static_cast<int>(step));
+        frames.images[step] = render_step(exposure, tallies[step]);
       },
       1);
-  return {.frames = std::move(frames), .statistics = {}};
+  PathTally tally;
+  for (const PathTally& each : tallies) tally += each;
+  return {.frames = std::move(frames), .statistics = statistics_of(tally)};
 }
 
 }  // namespace scan::synth

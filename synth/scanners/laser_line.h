@@ -18,14 +18,14 @@ namespace scan::synth {
 // tan(triangulation), the focus.
 //
 // The light falls off with the inverse distance from the laser (a fan spreads in one direction) and
-// with the cosine at the surface, which reflects it as Lambert's law says; light and view may be
+// with the beam's growing thickness; surfaces reflect it as their BSDF says; light and view may be
 // obstructed.
 struct LaserLine {
   Camera camera;
   double baseline_m = 0.1;
   double triangulation_rad = 0.5;
   double fan_rad = 0.8;         // full opening of the laser's fan
-  double beam_radius_m = 1e-4;  // 1/e^2 radius of the Gaussian across the plane (constant)
+  double beam_radius_m = 1e-4;  // 1/e^2 radius of the Gaussian across the plane, at the focus
   double peak_electrons =
       5000;  // at the stripe's centre on a white target facing the camera, at focus
   // Either the head moves by `step_m` along `stage_direction` (camera frame), or, with a turn_rad
@@ -41,6 +41,19 @@ struct LaserLine {
   Sensor sensor;
   double min_range_m = 0;
   double max_range_m = 1e9;
+  // What a real device has besides; 0 is the ideal one, and each obeys its effect.
+  double wavelength_m = 650e-9;
+  double beam_quality = 0;        // beam_spread: M^2 >= 1; 0: equally thick everywhere
+  double plane_bow_m = 0;         // plane_bow: sag along the normal at the fan's ends, at the focus
+  double plane_shift_m = 0;       // miscalibration: the real laser stands so far along the normal
+  double plane_turn_rad = 0;      // and its real triangulation angle is larger by this
+  double aperture_m = 0;          // diameter of the camera's lens: defocus, speckle; 0: a pinhole
+  double lens_focus_m = 0;        // depth of sharp images; 0: that of the laser's focus
+  double speckle_contrast = 0;    // of a point: 1 coherent and polarised, 0 incoherent light
+  double exposure_share = 0;      // motion: of a step, during which the shutter is open
+  double blooming_share = 0;      // of charge above the full well; the rest goes down a drain
+  double ambient_electrons = 0;   // scene_lights: of a white surface, per exposure
+  double electrons_per_w_m2 = 0;  // scene_lights: of a white surface under that irradiance
 };
 
 // Throws scan::Error (input) naming field, value and limit.
@@ -51,7 +64,7 @@ Rendering render(const LaserLine& scanner, const RayCaster& caster, const Pose& 
 // The true ray of (row, step): where the middle of the light plane meets the surface, lit and seen,
 // in that camera row, that is on the curve of views through the centres of its pixels (with
 // distortion no plane); of several such points the one nearest to the camera. Normals face the
-// laser.
+// laser. The plane is the calibrated one: what bow and miscalibration move shows as an error.
 std::vector<RayTruth> true_rays(const LaserLine& scanner, const RayCaster& caster,
                                 const Pose& world_from_scanner);
 

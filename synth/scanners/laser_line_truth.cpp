@@ -15,7 +15,7 @@ namespace {
 
 // Between two fan rays on both sides of an image row: the ray whose point is seen on that row, by
 // regula falsi in its Illinois form (Dowell and Jarratt 1971). None where the surface breaks off.
-std::optional<LitPoint> on_row(const LaserView& view, LitPoint a, LitPoint b, double row) {
+std::optional<SheetHit> on_row(const LaserView& view, SheetHit a, SheetHit b, double row) {
   // the rounding of a pixel coordinate of a thousand, through ray, hit and projection
   constexpr double rounding_px = 1e-11;
   double a_px = a.pixel.y() - row, b_px = b.pixel.y() - row;
@@ -24,7 +24,7 @@ std::optional<LitPoint> on_row(const LaserView& view, LitPoint a, LitPoint b, do
   int kept_before = 0;
   for (int iteration = 0; iteration < 100; ++iteration) {
     const double angle_rad = (a_px * b.angle_rad - b_px * a.angle_rad) / (a_px - b_px);
-    const LitPoint middle = view.shine(angle_rad, 0);
+    const SheetHit middle = view.shine(angle_rad, 0);
     if (!middle.is_hit) return std::nullopt;
     const double middle_px = middle.pixel.y() - row;
     if (std::abs(middle_px) < rounding_px) return middle;
@@ -40,7 +40,7 @@ std::optional<LitPoint> on_row(const LaserView& view, LitPoint a, LitPoint b, do
   return a_rest < b_rest ? a : b;
 }
 
-bool is_seen(const LaserView& view, const LitPoint& point) {
+bool is_seen(const LaserView& view, const SheetHit& point) {
   const Camera& camera = view.scanner.camera;
   if (!(point.pixel.x() >= -0.5 && point.pixel.x() <= camera.width_px - 0.5)) return false;
   // far outside a distorted image the projection folds back into it
@@ -57,7 +57,7 @@ struct StepTruth {
   std::vector<double> nearest_m =
       std::vector<double>(rays.size(), std::numeric_limits<double>::infinity());
 
-  void take(int row, const LitPoint& point) {
+  void take(int row, const SheetHit& point) {
     const double distance_m = point.x_in_camera.norm();
     if (distance_m >= nearest_m[row] || !is_seen(view, point)) return;
     nearest_m[row] = distance_m;
@@ -69,11 +69,11 @@ struct StepTruth {
 
   // All rows between two fan rays. Where their points are far apart the rays between them follow,
   // so that a surface is kept up to the limb where the light leaves it.
-  void follow(const LitPoint& a, const LitPoint& b, int depth) {
+  void follow(const SheetHit& a, const SheetHit& b, int depth) {
     if (!a.is_hit && !b.is_hit) return;
     const bool near = a.is_hit && b.is_hit && (a.pixel - b.pixel).norm() < 2;
     if (!near && depth > 0) {
-      const LitPoint middle = view.shine((a.angle_rad + b.angle_rad) / 2, 0);
+      const SheetHit middle = view.shine((a.angle_rad + b.angle_rad) / 2, 0);
       follow(a, middle, depth - 1);
       follow(middle, b, depth - 1);
       return;
@@ -89,9 +89,9 @@ struct StepTruth {
 void follow_fan(StepTruth& truth) {
   const double half_rad = truth.view.sheet.half_fan_rad;
   const int steps = fan_steps(truth.view.scanner, 0.5);
-  LitPoint previous = truth.view.shine(-half_rad, 0);
+  SheetHit previous = truth.view.shine(-half_rad, 0);
   for (int i = 1; i <= steps; ++i) {
-    const LitPoint next = truth.view.shine(half_rad * (2.0 * i / steps - 1), 0);
+    const SheetHit next = truth.view.shine(half_rad * (2.0 * i / steps - 1), 0);
     truth.follow(previous, next, 20);
     previous = next;
   }
@@ -99,9 +99,10 @@ void follow_fan(StepTruth& truth) {
 
 }  // namespace
 
-std::vector<RayTruth> true_rays(const LaserLine& scanner, const RayCaster& caster,
+std::vector<RayTruth> true_rays(const LaserLine& device, const RayCaster& caster,
                                 const Pose& world_from_scanner) {
-  check(scanner);
+  check(device);
+  const LaserLine scanner = with_effects(device, {});
   const LaserSheet sheet = laser_sheet(scanner);
   const std::vector<Pose> poses = scanner_from_camera(scanner);
   std::vector<RayTruth> rays(poses.size() * scanner.camera.height_px);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "libscan/core/raw_frames.h"
 
@@ -23,6 +24,14 @@ struct RenderStatistics {
   double sampling_error_rms = 0;
   double sampling_error_max = 0;
 };
+
+// Of one reading: how many paths it took, and the standard error that is left, over its noise.
+struct ReadingError {
+  int paths = 0;
+  double share = 0;
+};
+// In the order given, so that the sum is the same for any number of threads.
+RenderStatistics statistics_of(std::span<const ReadingError> readings);
 
 struct Rendering {
   RawFrames frames;

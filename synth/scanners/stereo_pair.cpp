@@ -9,67 +9,75 @@
 #include "synth/scanners/first_surface.h"
 #include "synth/scanners/limits.h"
 #include "synth/scanners/pixel_grid.h"
+#include "synth/scanners/stereo_optics.h"
+#include "synth/scanners/stereo_paths.h"
+#include "synth/scanners/surface_frame.h"
 
 namespace scan::synth {
 namespace {
 
-constexpr double dot_radius = 0.3;       // of the cell's width
-constexpr double dot_probability = 0.5;  // that a cell has a dot
-
-// The ray of a camera through a place in its image (pixels).
-ScannerRay camera_ray(const StereoCalibration& c, StereoSide side, const Eigen::Vector2d& place) {
-  const bool left = side == StereoSide::left;
-  const double cx = left ? c.cx_px : c.cx_px + c.doffs_px;
-  const Eigen::Vector3d toward((place.x() - cx) / c.focal_px, (place.y() - c.cy_px) / c.focal_px,
-                               1);
-  return {.origin = {left ? 0 : c.baseline_m, 0, 0}, .direction = toward.normalized()};
-}
-
-// Brightness, 0 to 1, of the projected pattern at a place measured in cells from the projector's
-// axis.
-double dot_pattern(double x_cells, double y_cells) {
-  const double column = std::floor(x_cells), row = std::floor(y_cells);
-  const auto word = [](double cell) {  // far outside the field cells repeat; nobody looks there
-    return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::clamp(cell, -1e9, 1e9)));
-  };
-  const auto random = philox4x32({word(column), word(row), 0, 0}, {0x646f7473, 0});
-  const auto uniform = [&](int i) { return random[i] * 0x1p-32; };
-  if (uniform(0) >= dot_probability) return 0;
-  const double free = 1 - 2 * dot_radius;  // the dot stays inside its cell
-  const double dx = x_cells - column - dot_radius - free * uniform(1);
-  const double dy = y_cells - row - dot_radius - free * uniform(2);
-  const double inside = std::max(0.0, 1 - (dx * dx + dy * dy) / (dot_radius * dot_radius));
-  return inside * inside;
-}
-
-// Electrons that the projector adds for a white surface.
-double projector_light(const StereoPair& s, const RayCaster& caster, const Pose& world_from_scanner,
-                       const SeenSurface& seen) {
-  if (s.projector_dots == 0 || s.projector_electrons == 0) return 0;
+// Electrons that a ray brings: of ambient light, and of the projector where it is not in shadow.
+double ray_electrons(const StereoPair& s, const RayCaster& caster, const Pose& world_from_scanner,
+                     const SeenSurface& seen, const ScannerRay& ray) {
+  const SurfaceFrame surface(seen, caster.scene());
+  const Eigen::Vector3d out = -ray.direction;
+  double sum = s.ambient_electrons * surface.albedo(out);
   const Eigen::Vector3d projector(s.calibration.baseline_m / 2, 0, 0);
-  const Eigen::Vector3d path = seen.point - projector;
-  if (!(path.z() > 0)) return 0;
-  const double cells = s.projector_dots * s.calibration.focal_px / s.calibration.width_px;
-  const double pattern = dot_pattern(cells * path.x() / path.z(), cells * path.y() / path.z());
-  const double cosine = -seen.normal.dot(path.normalized());
-  if (pattern == 0 || !(cosine > 0)) return 0;
-  if (caster.occluded(seen.hit, world_from_scanner * projector)) return 0;
-  return s.projector_electrons * pattern * cosine * s.focus_m * s.focus_m / path.squaredNorm();
+  const double light_e = projector_electrons(s, seen.point);
+  if (light_e == 0) return sum;
+  const Eigen::Vector3d in = (projector - seen.point).normalized();
+  if (!(seen.normal.dot(in) > 0)) return sum;
+  if (caster.occluded(seen.hit, world_from_scanner * projector)) return sum;
+  return sum + light_e * surface.response(out, in);
 }
 
-Image<std::uint8_t> render_side(const StereoPair& s, const RayCaster& caster,
-                                const Pose& world_from_scanner, StereoSide side,
-                                const RenderAddress& address, DetectorEffects effects) {
+// Reads every pixel; `mean(pixel, column, row)` is its mean electrons.
+template <class Mean>
+Image<std::uint8_t> read_side(const StereoPair& s, StereoSide side, const RenderAddress& address,
+                              DetectorEffects effects, const Mean& mean) {
   effects.quantisation = true;  // the image has 8 bits
   Image<std::uint8_t> image(s.calibration.width_px, s.calibration.height_px);
   const std::uint64_t first = side == StereoSide::left ? 0 : image.pixels.size();
   parallel_for(image.pixels.size(), [&](std::size_t i) {
     const auto [column, row] = place_of(i, image.width);
     RandomStream random(address.seed, address.scan, first + i);
-    const double mean = expected_electrons(s, caster, world_from_scanner, side, column, row);
-    image.pixels[i] = static_cast<std::uint8_t>(read_pixel(s.sensor, effects, mean, random));
+    image.pixels[i] =
+        static_cast<std::uint8_t>(read_pixel(s.sensor, effects, mean(i, column, row), random));
   });
   return image;
+}
+
+Rendering render_direct(const StereoPair& s, const RayCaster& caster, const Pose& pose,
+                        const RenderAddress& address, const DetectorEffects& reading) {
+  const auto side = [&](StereoSide which) {
+    return read_side(s, which, address, reading, [&](std::size_t, int column, int row) {
+      return expected_electrons(s, caster, pose, which, column, row);
+    });
+  };
+  return {.frames = ImagePair{.calibration = s.calibration,
+                              .left = side(StereoSide::left),
+                              .right = side(StereoSide::right)},
+          .statistics = {}};
+}
+
+Rendering render_paths(const StereoPair& s, const LightTransport& transport, const Pose& pose,
+                       const RenderAddress& address, const DetectorEffects& reading) {
+  const std::size_t pixels = static_cast<std::size_t>(s.calibration.width_px) *
+                             static_cast<std::size_t>(s.calibration.height_px);
+  std::vector<ReadingError> errors(2 * pixels);
+  const auto side = [&](StereoSide which) {
+    const std::size_t first = which == StereoSide::left ? 0 : pixels;
+    return read_side(s, which, address, reading, [&](std::size_t i, int column, int row) {
+      const PixelEstimate pixel = path_electrons(s, transport, pose, address, which, column, row);
+      errors[first + i] = {pixel.paths, pixel.standard_error / reading_noise_e(s, pixel.electrons)};
+      return std::max(0.0, pixel.electrons);
+    });
+  };
+  Image<std::uint8_t> left = side(StereoSide::left), right = side(StereoSide::right);
+  return {.frames =
+              ImagePair{
+                  .calibration = s.calibration, .left = std::move(left), .right = std::move(right)},
+          .statistics = statistics_of(errors)};
 }
 
 }  // namespace
@@ -91,18 +99,28 @@ void check(const StereoPair& s) {
   require_positive("stereo_pair/focus_m", s.focus_m);
   require_within("stereo_pair/sub_rays", s.sub_rays, 1, 64);
   require_sensor("stereo_pair", s.sensor, 8);
+  require_positive("stereo_pair/wavelength_m", s.wavelength_m);
+  require_within("stereo_pair/electrons_per_w_m2", s.electrons_per_w_m2, 0, 1e12);
+  require_within("stereo_pair/aperture_m", s.aperture_m, 0, 1);
+  require_within("stereo_pair/vignetting", s.vignetting, 0, 1);
+  require_finite("stereo_pair/right_rotation_error_rad", s.right_rotation_error_rad.norm());
+  require_finite("stereo_pair/right_position_error_m", s.right_position_error_m.norm());
+  require_finite("stereo_pair/velocity_m_s", s.velocity_m_s.norm());
+  require_finite("stereo_pair/angular_velocity_rad_s", s.angular_velocity_rad_s.norm());
+  require_within("stereo_pair/row_time_s", s.row_time_s, 0, 1);
+  require_within("stereo_pair/exposure_s", s.exposure_s, 0, 10);
 }
 
 double expected_electrons(const StereoPair& s, const RayCaster& caster,
                           const Pose& world_from_scanner, StereoSide side, int column, int row) {
+  const bool moving = is_moving(s);
   double sum = 0;
   for (int i = 0; i < s.sub_rays * s.sub_rays; ++i) {
-    const Eigen::Vector2d place = sub_pixel({column, row}, i, s.sub_rays);
-    const ScannerRay ray = camera_ray(s.calibration, side, place);
-    const auto seen = first_surface(caster, world_from_scanner, ray);
-    if (!seen) continue;
-    const double albedo = albedo_at(caster.scene(), seen->hit.object, seen->hit.point);
-    sum += albedo * (s.ambient_electrons + projector_light(s, caster, world_from_scanner, *seen));
+    const StereoRay stereo = stereo_ray(s, side, column, row, i);
+    const Pose world_from_moved =
+        moving ? world_from_scanner * moved(s, stereo.time_s) : world_from_scanner;
+    if (const auto seen = first_surface(caster, world_from_moved, stereo.ray))
+      sum += stereo.factor * ray_electrons(s, caster, world_from_moved, *seen, stereo.ray);
   }
   return sum / (s.sub_rays * s.sub_rays);
 }
@@ -110,16 +128,12 @@ double expected_electrons(const StereoPair& s, const RayCaster& caster,
 Rendering render(const StereoPair& device, const RayCaster& caster, const Pose& world_from_scanner,
                  const RenderAddress& address, const EffectSet& effects) {
   check(device);
-  StereoPair scanner = device;
-  if (!effects.has(Effect::footprint)) scanner.sub_rays = 1;
-  const auto side = [&](StereoSide which) {
-    return render_side(scanner, caster, world_from_scanner, which, address,
-                       detector_effects(effects));
-  };
-  return {.frames = ImagePair{.calibration = scanner.calibration,
-                              .left = side(StereoSide::left),
-                              .right = side(StereoSide::right)},
-          .statistics = {}};
+  const StereoPair scanner = with_effects(device, effects);
+  const DetectorEffects reading = detector_effects(effects);
+  if (!needs_paths(caster.scene(), effects))
+    return render_direct(scanner, caster, world_from_scanner, address, reading);
+  const LightTransport transport(caster, transport_options(effects, false));
+  return render_paths(scanner, transport, world_from_scanner, address, reading);
 }
 
 std::vector<RayTruth> true_rays(const StereoPair& scanner, const RayCaster& caster,
@@ -129,7 +143,7 @@ std::vector<RayTruth> true_rays(const StereoPair& scanner, const RayCaster& cast
   parallel_for(rays.size(), [&](std::size_t i) {
     const auto [column, row] = place_of(i, c.width_px);
     rays[i] = true_ray(caster, world_from_scanner,
-                       camera_ray(c, StereoSide::left, Eigen::Vector2d(column, row)));
+                       calibrated_ray(c, StereoSide::left, Eigen::Vector2d(column, row)));
   });
   return rays;
 }

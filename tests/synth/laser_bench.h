@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/synth/scanner_scenes.h"
 #include "synth/scanners/laser_line_optics.h"
+#include "tests/synth/scanner_scenes.h"
 
 namespace scan::synth {
 
@@ -31,6 +31,13 @@ inline Scene white_scene(std::vector<Object> objects) {
   return {std::move(objects), {plain(1)}};
 }
 
+// Of a scanner at the world's origin.
+inline Image<std::uint16_t> first_image(const LaserLine& s, const RayCaster& caster,
+                                        const EffectSet& effects) {
+  const Rendering rendering = render(s, caster, Pose::Identity(), {}, effects);
+  return std::get<StripeImages>(rendering.frames).images[0];
+}
+
 // A camera at the world's origin with its sheet.
 struct Bench {
   LaserLine scanner;
@@ -43,7 +50,8 @@ struct Bench {
         caster(scene),
         view{scanner, sheet, caster, Pose::Identity()} {}
   double electrons(double column, double row) const {
-    return view.electrons(*ray_through(scanner.camera, {column, row}));
+    return view.light({.direction = ray_through(scanner.camera, {column, row})->normalized()})
+        .laser_e;
   }
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libscan/core/units.h"
+#include "synth/scanners/pulsed_lidar_beam.h"
 #include "tests/synth/scanner_scenes.h"
 
 namespace scan::synth {

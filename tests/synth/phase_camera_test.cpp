@@ -2,57 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "synth/scanners/phase_camera.h"
 
-#include <cmath>
-
-#include "libscan/core/units.h"
-#include "tests/synth/scanner_scenes.h"
+#include "tests/synth/phase_bench.h"
 
 namespace scan::synth {
 namespace {
-
-using Phasor = std::complex<double>;
-
-PhaseCamera small_camera() {
-  PhaseCamera camera;
-  camera.camera = {
-      .width_px = 48, .height_px = 32, .fx_px = 60, .fy_px = 60, .cx_px = 23.5, .cy_px = 15.5};
-  camera.frequencies_hz = {16e6, 80e6, 120e6};
-  return camera;
-}
-
-Eigen::Vector3d direction_of(const PhaseCamera& s, int column, int row) {
-  return Eigen::Vector3d((column - s.camera.cx_px) / s.camera.fx_px,
-                         (row - s.camera.cy_px) / s.camera.fy_px, 1)
-      .normalized();
-}
-
-PixelPhasors light_at(const PhaseCamera& camera, const Scene& scene, int column, int row) {
-  return expected_phasors(camera, RayCaster(scene), Pose::Identity(), column, row);
-}
-
-PhaseTaps taps_of(const PhaseCamera& camera, const Scene& scene, const EffectSet& effects,
-                  const RenderAddress& address = {}) {
-  return std::get<PhaseTaps>(
-      render(camera, RayCaster(scene), Pose::Identity(), address, effects).frames);
-}
-
-// phi = 4 pi f d / c of physics 7.5.
-double phase_of(double frequency_hz, double distance_m) {
-  return 4 * std::numbers::pi * frequency_hz * distance_m / speed_of_light_m_s;
-}
-
-// The angle between a phasor and a phase, rad.
-double angle_between(const Phasor& phasor, double phase) {
-  return std::abs(std::arg(phasor * std::polar(1.0, -phase)));
-}
-
-// (C3 - C1) + ... = 2 A exp(i phi) of C_k = B + A cos(phi + k pi / 2).
-Phasor decode(const PhaseTaps& frames, std::size_t frequency, std::size_t pixel) {
-  const auto tap = [&](int k) {
-    return static_cast<double>(frames.taps[frequency][k].pixels[pixel]);
-  };
-  return {tap(0) - tap(2), tap(3) - tap(1)};
-}
 
 // Distance from the origin along a unit direction to plane_at(z_m, tilt_rad).
 double distance_to_plane(const Eigen::Vector3d& direction, double z_m, double tilt_rad) {
@@ -198,6 +151,61 @@ TEST(PhaseCamera, MixesSurfacesInsideAPixelAsPhasors) {
   EXPECT_NEAR(std::abs(near_only.amplitude_e[0]) / std::abs(far_half), 2.25, 0.05);  // (1.5 / 1)^2
 }
 
+// Ranges that a warm camera with a fixed pattern reads, less the true ones: pixel by pixel.
+std::vector<double> offsets_m(std::uint32_t scan) {
+  PhaseCamera camera = small_camera();
+  camera.electrons_at_1m = 40000;
+  camera.range_offset_m = 0.02;
+  camera.pixel_offset_m = 0.005;
+  const Scene scene{.objects = {plane_at(1)}, .materials = {plain(1)}};
+  const PhaseTaps frames = taps_of(camera, scene, {Effect::quantisation, Effect::miscalibration},
+                                   {.seed = 5, .scan = scan});
+  std::vector<double> offsets;
+  for (std::size_t pixel = 0; pixel < 48 * 32; ++pixel) {
+    const PixelPlace place = place_of(pixel, 48);
+    const double true_m = 1 / direction_of(camera, place.column, place.row).z();
+    const Phasor turned = decode(frames, 1, pixel) * std::polar(1.0, -phase_of(80e6, true_m));
+    offsets.push_back(std::arg(turned) / phase_of(80e6, 1));
+  }
+  return offsets;
+}
+
+// Mean and deviation of 1536 normal offsets: five standard errors; rounding of 1/2 e of 1e4 and
+// more is 0.02 mm.
+TEST(PhaseCamera, AddsItsOffsetAndAFixedPatternToAllRanges) {
+  const std::vector<double> offsets = offsets_m(0);
+  const auto count = static_cast<double>(offsets.size());
+  double mean = 0, square = 0;
+  for (const double offset : offsets) mean += offset / count;
+  for (const double offset : offsets) square += (offset - mean) * (offset - mean) / (count - 1);
+  EXPECT_NEAR(mean, 0.02, 5 * 0.005 / std::sqrt(count));
+  EXPECT_NEAR(std::sqrt(square), 0.005, 5 * 0.005 / std::sqrt(2 * count) + 2e-5);
+  const std::vector<double> later = offsets_m(1);
+  for (std::size_t i = 0; i < offsets.size(); ++i) EXPECT_NEAR(offsets[i], later[i], 1e-12);
+}
+
+TEST(PhaseCamera, IsIdealWithoutEffects) {
+  PhaseCamera camera = small_camera();
+  const Scene scene{.objects = {plane_at(1.5), plate(1, -0.1, 0.1)}, .materials = {plain(0.6)}};
+  const auto ideal = taps_of(camera, scene, {}).taps;
+  camera.harmonics = {0.1, 0.1};
+  camera.tap_interval_s = 1e-3;
+  camera.velocity_m_s = {1, 1, 1};
+  camera.vignetting = 1;
+  camera.aperture_m = 0.02;
+  camera.range_offset_m = 0.1;
+  camera.pixel_offset_m = 0.1;
+  camera.sub_rays = 4;
+  camera.sensor.read_noise_e = 100;
+  const auto bare = taps_of(camera, scene, {}).taps;
+  for (std::size_t f = 0; f < ideal.size(); ++f)
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(ideal[f][k].pixels, bare[f][k].pixels);
+  for (const Effect effect : {Effect::wiggling, Effect::motion, Effect::vignetting, Effect::defocus,
+                              Effect::miscalibration, Effect::footprint, Effect::read_noise})
+    EXPECT_NE(taps_of(camera, scene, {effect}).taps[0][1].pixels, ideal[0][1].pixels)
+        << name(effect);
+}
+
 TEST(PhaseCamera, KnowsWhereItsPixelsLookThroughADistortedLens) {
   PhaseCamera camera = small_camera();
   camera.camera.k1 = -0.2;
@@ -280,6 +288,28 @@ TEST(PhaseCamera, NamesTheFieldThatIsWrong) {
             "phase_camera/sensor.gain_e_per_dn: 0, must be positive and finite");
   EXPECT_EQ(with([](auto& c) { c.emitter_offset_m = std::nan(""); }),
             "phase_camera/emitter_offset_m: nan, must be finite");
+  EXPECT_EQ(with([](auto& c) {
+              c.harmonics = {0.3, -0.3};
+            }),
+            "phase_camera/harmonics (sum of absolute values): 0.6, must be from 0 to 0.5");
+  EXPECT_EQ(with([](auto& c) { c.tap_interval_s = -1; }),
+            "phase_camera/tap_interval_s: -1, must be from 0 to 1");
+  EXPECT_EQ(with([](auto& c) { c.velocity_m_s.y() = INFINITY; }),
+            "phase_camera/velocity_m_s: inf, must be finite");
+  EXPECT_EQ(with([](auto& c) { c.angular_velocity_rad_s.x() = NAN; }),
+            "phase_camera/angular_velocity_rad_s: nan, must be finite");
+  EXPECT_EQ(with([](auto& c) { c.vignetting = 2; }),
+            "phase_camera/vignetting: 2, must be from 0 to 1");
+  EXPECT_EQ(with([](auto& c) { c.aperture_m = -0.1; }),
+            "phase_camera/aperture_m: -0.1, must be from 0 to 1");
+  EXPECT_EQ(with([](auto& c) { c.focus_m = 0; }),
+            "phase_camera/focus_m: 0, must be positive and finite");
+  EXPECT_EQ(with([](auto& c) { c.range_offset_m = NAN; }),
+            "phase_camera/range_offset_m: nan, must be finite");
+  EXPECT_EQ(with([](auto& c) { c.pixel_offset_m = 2; }),
+            "phase_camera/pixel_offset_m: 2, must be from 0 to 1");
+  EXPECT_EQ(with([](auto& c) { c.electrons_per_w_m2 = -1; }),
+            "phase_camera/electrons_per_w_m2: -1, must be from 0 to 1e+09");
   EXPECT_NE(with([](auto& c) { c.camera.fx_px = 0; }).find("fx_px"), std::string::npos);
   EXPECT_NE(with([](auto& c) { c.max_range_m = 0; }).find("max_range_m: 0"), std::string::npos);
   EXPECT_NE(with([](auto& c) { c.electrons_at_1m = -5; }).find("electrons_at_1m: -5"),

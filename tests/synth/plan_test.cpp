@@ -6,108 +6,138 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "libscan/core/error.h"
-#include "synth/detector.h"
-#include "synth/effects/sensitivity.h"
+#include "synth/effects/thin.h"
+#include "tests/synth/scanner_scenes.h"
 
 namespace scan::synth {
 namespace {
 
 LaserLine laser() {
-  return {.camera = {640, 480, 800, 800, 319.5, 239.5},
-          .sensor = {.gain_e_per_dn = 20, .read_noise_e = 30, .bits = 10}};
+  return {.camera = {160, 120, 400, 400, 79.5, 59.5},
+          .peak_electrons = 8000,
+          .steps = 20,
+          .step_m = 1e-3,
+          .sensor = {.gain_e_per_dn = 4, .read_noise_e = 8, .bits = 12}};
+}
+
+StereoPair stereo() {
+  StereoPair pair;
+  pair.calibration = {.width_px = 160,
+                      .height_px = 120,
+                      .focal_px = 250,
+                      .cx_px = 79.5,
+                      .cy_px = 59.5,
+                      .baseline_m = 0.06,
+                      .disparities_px = 96};
+  return pair;
+}
+
+PhaseCamera phase() {
+  return {.camera = {80, 60, 85, 85, 39.5, 29.5}, .sensor = {.read_noise_e = 20}};
+}
+
+PulsedLidar lidar() {
+  return {.pattern = RasterPattern{30, 40, 0.3, 0.4}, .sensor = {.read_noise_e = 10}};
 }
 
 std::vector<Scanner> every_scanner() {
-  StereoPair stereo;
-  stereo.calibration = {.width_px = 64,
-                        .height_px = 48,
-                        .focal_px = 60,
-                        .cx_px = 31.5,
-                        .cy_px = 23.5,
-                        .baseline_m = 0.1,
-                        .disparities_px = 16};
-  PhaseCamera phase{.camera = {64, 48, 60, 60, 31.5, 23.5}, .sensor = {}};
-  return {laser(), stereo, phase,
-          PulsedLidar{.pattern = RasterPattern{4, 4, 0.1, 0.1}, .sensor = {}}};
+  return {laser(), stereo(), phase(), lidar()};
 }
 
-const EffectDecision& named(const EffectPlan& plan, const std::string& effect) {
+// A ball where the scanner sees it well, with a print for the stereo pair.
+Scene ball(const Scanner& scanner) {
+  const double z_m = std::holds_alternative<PulsedLidar>(scanner)   ? 8
+                     : std::holds_alternative<PhaseCamera>(scanner) ? 1.3
+                     : std::holds_alternative<StereoPair>(scanner)  ? 0.6
+                                                                    : 0.19;
+  return {.objects = {sphere_at({0, 0, z_m}, z_m / 5)},
+          .materials = {
+              {.name = "print", .bsdf = Lambert{0.8}, .texture = NoiseTexture{z_m / 15, 2, 0.8}}}};
+}
+
+EffectPlan plan_for(const Scanner& scanner, const Scene& scene, const EffectChoice& choice = {}) {
+  const std::vector<Pose> views = {Pose::Identity()};
+  return plan_effects(scanner, scene, views, choice);
+}
+
+const EffectDecision& named(const EffectPlan& plan, Effect effect) {
   for (const EffectDecision& decision : plan)
-    if (name(decision.effect) == effect) return decision;
-  throw std::out_of_range(effect);
+    if (decision.effect == effect) return decision;
+  throw std::out_of_range("no decision");
 }
 
 TEST(EffectPlan, DecidesEachEffectForEachScannerWithAReason) {
   for (const Scanner& scanner : every_scanner()) {
-    const EffectPlan plan = plan_effects(scanner, Scene{}, {}, {});
-    ASSERT_EQ(plan.size(), 4u);
+    const EffectPlan plan = plan_for(scanner, ball(scanner));
+    ASSERT_EQ(plan.size(), static_cast<std::size_t>(effect_count));
     for (const EffectDecision& decision : plan) {
-      EXPECT_GE(decision.bound_m, 0);
-      EXPECT_TRUE(std::isfinite(decision.bound_m));
-      EXPECT_EQ(decision.reason.back(), '.');
+      EXPECT_GE(decision.bound_m, 0) << name(decision.effect);
+      EXPECT_TRUE(std::isfinite(decision.bound_m)) << name(decision.effect);
+      EXPECT_TRUE(std::isfinite(decision.bound_sigma)) << name(decision.effect);
+      EXPECT_EQ(decision.reason.back(), '.') << decision.reason;
+      EXPECT_EQ(decision.on, decision.bound_sigma >= 0.02) << decision.reason;
     }
-    EXPECT_TRUE(named(plan, "shot noise").on) << "light is never without it";
-    EXPECT_TRUE(named(plan, "shot noise").bound_m > 0);
+    EXPECT_TRUE(named(plan, Effect::shot_noise).on) << "light is never without it";
   }
 }
 
-TEST(EffectPlan, LeavesOutWhatIsBelowAPercentOfSigma) {
-  LaserLine scanner = laser();
-  EXPECT_TRUE(named(plan_effects(scanner, Scene{}, {}, {}), "read noise").on);
-  scanner.sensor.read_noise_e = 0;
-  const EffectPlan without = plan_effects(scanner, Scene{}, {}, {});
-  EXPECT_FALSE(named(without, "read noise").on);
-  EXPECT_EQ(named(without, "read noise").bound_m, 0);
-  EXPECT_NE(named(without, "read noise").reason.find("Off"), std::string::npos);
-  scanner.sensor.gain_e_per_dn = 1e-3;
-  EXPECT_FALSE(named(plan_effects(scanner, Scene{}, {}, {}), "quantisation").on);
-  EXPECT_FALSE(detector_effects(effects_of(plan_effects(scanner, Scene{}, {}, {}))).quantisation);
+// Convex, matt, alone in clear air: light meets it once.
+TEST(EffectPlan, LeavesOutAllTransportForABall) {
+  for (const Scanner& scanner : every_scanner()) {
+    const EffectPlan plan = plan_for(scanner, ball(scanner));
+    for (const Effect effect :
+         {Effect::interreflection, Effect::mirror_reflection, Effect::refraction,
+          Effect::subsurface, Effect::medium, Effect::scene_lights})
+      EXPECT_FALSE(named(plan, effect).on) << named(plan, effect).reason;
+  }
 }
 
-// Just on either side of the limit, by the plan's own figures.
-TEST(EffectPlan, SwitchesAtTheLimitItStates) {
-  const auto share = [](const LaserLine& scanner) {
-    double largest = 0;
-    for (const Sensitivity& point : sensitivities(scanner)) {
-      const double step_e = scanner.sensor.gain_e_per_dn;
-      const double white_e = std::hypot(scanner.sensor.read_noise_e, step_e / std::sqrt(12));
-      const double sigma_m = std::hypot(point.shot_m, white_e * point.per_electron_m);
-      largest = std::max(largest, 3 * scanner.sensor.read_noise_e * point.per_electron_m / sigma_m);
-    }
-    return largest;
-  };
-  LaserLine scanner = laser();
-  for (double noise_e = 1e-3; noise_e < 100; noise_e *= 1.3) {
-    scanner.sensor.read_noise_e = noise_e;
-    EXPECT_EQ(named(plan_effects(scanner, Scene{}, {}, {}), "read noise").on,
-              share(scanner) >= 0.01)
-        << noise_e;
+// Two walls that meet at a right angle, their edge on the axis.
+Scene corner(double z_m, double albedo) {
+  Scene scene{.objects = {}, .materials = {plain(albedo)}};
+  for (const double side : {-1.0, 1.0}) {
+    Object wall = plane_at(z_m, side * std::numbers::pi / 4);
+    scene.objects.push_back(std::move(wall));
+  }
+  return scene;
+}
+
+TEST(EffectPlan, SwitchesInterreflectionOnInACorner) {
+  EXPECT_TRUE(named(plan_for(phase(), corner(1.5, 0.8)), Effect::interreflection).on);
+  EXPECT_TRUE(named(plan_for(lidar(), corner(8, 0.8)), Effect::interreflection).bound_m > 0);
+}
+
+TEST(EffectPlan, SwitchesOnWhatTheScenesMaterialsCallFor) {
+  for (const Scanner& scanner : every_scanner()) {
+    Scene scene = ball(scanner);
+    const double z_m = scene.objects[0].world_from_object.translation().z();
+    scene.objects.push_back(plane_at(2 * z_m));
+    scene.objects[0].material = 1;
+    scene.materials.push_back({.name = "mirror", .bsdf = Conductor{.roughness = 0}});
+    EXPECT_TRUE(named(plan_for(scanner, scene), Effect::mirror_reflection).on)
+        << named(plan_for(scanner, scene), Effect::mirror_reflection).reason;
+    scene.materials[1].bsdf = Dielectric{};
+    EXPECT_TRUE(named(plan_for(scanner, scene), Effect::refraction).on)
+        << named(plan_for(scanner, scene), Effect::refraction).reason;
   }
 }
 
 TEST(EffectPlan, FollowsAnExplicitChoice) {
   using Kind = EffectChoice::Kind;
-  const LaserLine scanner = laser();
-  for (const auto& decision : plan_effects(scanner, Scene{}, {}, {Kind::all, {}}))
-    EXPECT_TRUE(decision.on);
-  for (const auto& decision : plan_effects(scanner, Scene{}, {}, {Kind::none, {}}))
-    EXPECT_EQ(decision.on, decision.effect == Effect::footprint);
-  const EffectPlan plan =
-      plan_effects(scanner, Scene{}, {}, {Kind::named, {"read-noise", "quantisation"}});
-  EXPECT_FALSE(named(plan, "shot noise").on);
-  EXPECT_TRUE(named(plan, "read noise").on);
-  EXPECT_TRUE(named(plan, "quantisation").on);
-  const DetectorEffects effects = detector_effects(effects_of(plan));
-  EXPECT_FALSE(effects.shot_noise);
-  EXPECT_TRUE(effects.read_noise);
-  EXPECT_TRUE(effects.quantisation);
+  const Scene scene = ball(laser());
+  for (const auto& decision : plan_for(laser(), scene, {Kind::all, {}})) EXPECT_TRUE(decision.on);
+  for (const auto& decision : plan_for(laser(), scene, {Kind::none, {}})) EXPECT_FALSE(decision.on);
+  const EffectSet effects = effects_of(
+      plan_for(laser(), scene, {Kind::named, {"read-noise", "quantisation", "plane_bow"}}));
+  EXPECT_EQ(effects, (EffectSet{Effect::read_noise, Effect::quantisation, Effect::plane_bow}));
 }
 
 TEST(EffectPlan, NamesTheNearestKnownEffect) {
   try {
-    plan_effects(laser(), Scene{}, {}, {EffectChoice::Kind::named, {"shot nose"}});
+    check(EffectChoice{EffectChoice::Kind::named, {"shot nose"}});
     FAIL() << "an unknown name must be refused";
   } catch (const Error& error) {
     EXPECT_EQ(error.trouble(), Trouble::usage);
@@ -116,44 +146,40 @@ TEST(EffectPlan, NamesTheNearestKnownEffect) {
   }
 }
 
-// The laser's figures against the least-squares fit itself: a Gaussian of the same width, sampled
-// per pixel, its slope matched to the error.
-TEST(Sensitivity, OfThePeakIsThatOfTheLeastSquaresFit) {
-  const LaserLine scanner = laser();
-  const double z = scanner.baseline_m / std::tan(scanner.triangulation_rad);
-  const double stripe_px =
-      scanner.beam_radius_m / 2 / std::cos(scanner.triangulation_rad) * 800 / z;
-  const double s = std::sqrt(stripe_px * stripe_px + 1.0 / 12), height = scanner.peak_electrons;
-  double slope2 = 0, slope1 = 0, shot = 0;
-  const double step = 1e-3;
-  for (double x = -10 * s; x <= 10 * s; x += step) {
-    const double value = height * std::exp(-x * x / (2 * s * s)), slope = -x / (s * s) * value;
-    slope2 += slope * slope * step;
-    slope1 += std::abs(slope) * step;
-    shot += value > 0 ? slope * slope / value * step : 0;
+TEST(EffectPlan, IsTheSameForAnyThreadCount) {
+  for (const Scanner& scanner : every_scanner()) {
+    const Scene scene = ball(scanner);
+    expect_same_for_any_thread_count([&] {
+      std::vector<std::tuple<bool, double, double>> decisions;
+      for (const EffectDecision& d : plan_for(scanner, scene))
+        decisions.emplace_back(d.on, d.bound_m, d.bound_sigma);
+      return decisions;
+    });
   }
-  const double m_per_px = z * z / (scanner.baseline_m * 800);
-  const Sensitivity bright = sensitivities(scanner).front();
-  EXPECT_NEAR(bright.per_electron_m, m_per_px / std::sqrt(slope2), 1e-6 * bright.per_electron_m);
-  EXPECT_NEAR(bright.worst_per_electron_m, m_per_px * slope1 / slope2,
-              1e-5 * bright.worst_per_electron_m);
-  EXPECT_NEAR(bright.shot_m, m_per_px / std::sqrt(shot), 1e-6 * bright.shot_m);
 }
 
-TEST(Sensitivity, OfThePhaseIsThatOfTheArcTangent) {
-  PhaseCamera scanner{
-      .camera = {64, 48, 60, 60, 31.5, 23.5}, .frequencies_hz = {40e6}, .sensor = {}};
-  const Sensitivity near = sensitivities(scanner).front();
-  const double amplitude = scanner.contrast * scanner.electrons_at_1m, phi = 0.7, h = 1e-3;
-  double squares = 0;
-  for (int k = 0; k < 4; ++k) {
-    double taps[4];
-    for (int j = 0; j < 4; ++j)
-      taps[j] = amplitude * std::cos(phi + j * std::numbers::pi / 2) + (j == k ? h : 0);
-    squares += std::pow((std::atan2(taps[3] - taps[1], taps[0] - taps[2]) - phi) / h, 2);
+TEST(EffectName, IsFoundAgain) {
+  for (const Effect effect : all_effects()) {
+    std::string word(name(effect));
+    EXPECT_EQ(effect_named(word), effect);
+    std::replace(word.begin(), word.end(), ' ', '-');
+    EXPECT_EQ(effect_named(word), effect);
   }
-  const double m_per_rad = 299792458 / (4 * std::numbers::pi * 40e6);
-  EXPECT_NEAR(near.per_electron_m, m_per_rad * std::sqrt(squares), 1e-6 * near.per_electron_m);
+  EXPECT_EQ(effect_named("gloss"), std::nullopt);
+}
+
+// Fewer rays over the same view, each as exact as before.
+TEST(Thinned, KeepsTheViewWithFewerRays) {
+  for (const Scanner& scanner : every_scanner()) {
+    const Scanner few = thinned(scanner, 300);
+    check(few);
+    EXPECT_LT(ray_count(few), ray_count(scanner));
+    EXPECT_GE(ray_count(few), 60);
+    EXPECT_EQ(ray_count(thinned(scanner, 1e9)), ray_count(scanner));
+  }
+  const auto camera = std::get<PhaseCamera>(thinned(phase(), 300)).camera;
+  EXPECT_NEAR(camera.width_px / camera.fx_px, 80 / 85.0, 1e-12);
+  EXPECT_NEAR((camera.cx_px + 0.5) / camera.fx_px, 40 / 85.0, 1e-12);
 }
 
 }  // namespace

@@ -61,28 +61,28 @@ std::optional<double> first_range_m(double extra_m) {
 // Surfaces closer than the pulse (c sigma = 0.45 m): one return at the mean, weighted by energy,
 // here one half each to within 1 / 32 (a line through the footprint, see pulsed_lidar_test.cpp).
 // The fit of one Gaussian to two differs from the mean by the third moment, (extra / c sigma)^2 of
-// the separation. Far surfaces: the first return alone, to what sampling and rounding cost
-// (lidar_range_test.cpp: 0.12 mm).
+// the separation. From four sigma of the pulse on, 0.9 m: the first return, to what sampling and
+// rounding cost (lidar_range_test.cpp: 0.12 mm; 0.5 mm where a second Gaussian is fitted next to it
+// and takes on some of the difference between recorded pulse and Gaussian).
 TEST(MixedFootprint, IsOneReturnWithinThePulseAndTwoBeyond) {
   for (const double extra_m : {0.01, 0.03, 0.1})
     EXPECT_NEAR(first_range_m(extra_m).value(), 10 + extra_m / 2,
                 extra_m * (1.0 / 32 + std::pow(extra_m / 0.45, 2)) + 1.2e-4);
   for (const double extra_m : {1.6, 2.0, 5.0})
     EXPECT_NEAR(first_range_m(extra_m).value(), 10, 1.2e-4);
+  for (const double extra_m : {0.9, 0.95, 1.0, 1.05, 1.1, 1.3})
+    EXPECT_NEAR(first_range_m(extra_m).value(), 10, 5e-4) << extra_m;
 }
 
-// In between a point lies between the nearer surface and the mean, or there is none.
+// In between there is a point, and it lies between the nearer surface and the mean.
 TEST(MixedFootprint, NeverLeavesTheTwoSurfaces) {
-  int points = 0;
   for (int i = 0; i < 30; ++i) {
     const double extra_m = 0.1 + 0.05 * i;
     const auto range_m = first_range_m(extra_m);
-    if (!range_m) continue;
-    ++points;
-    EXPECT_GT(*range_m, 10 - 1.2e-4) << extra_m;
+    ASSERT_TRUE(range_m) << extra_m;
+    EXPECT_GT(*range_m, 10 - 5e-4) << extra_m;
     EXPECT_LT(*range_m, 10 + extra_m * (0.5 + 1.0 / 32)) << extra_m;
   }
-  EXPECT_GE(points, 20);
 }
 
 }  // namespace
