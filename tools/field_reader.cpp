@@ -73,6 +73,10 @@ void FieldReader::frequencies(std::string_view name, std::vector<double>& values
   values_hz = reader_.frequencies_hz(name);
 }
 
+void FieldReader::numbers(std::string_view key, std::vector<double>& values) {
+  if (reader_.has(key)) values = reader_.numbers(key);
+}
+
 void FieldReader::vector(std::string_view name, Eigen::Vector3d& value_m) {
   value_m = reader_.vector_m(name, value_m);
 }

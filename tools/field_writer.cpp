@@ -47,6 +47,9 @@ void FieldWriter::time(std::string_view name, double& value_s, Need) {
 void FieldWriter::frequencies(std::string_view name, std::vector<double>& values_hz) {
   object_[with(name, "_hz")] = values_hz;
 }
+void FieldWriter::numbers(std::string_view key, std::vector<double>& values) {
+  object_[std::string(key)] = values;
+}
 void FieldWriter::vector(std::string_view name, Eigen::Vector3d& value_m) {
   object_[with(name, "_m")] = three(value_m);
 }

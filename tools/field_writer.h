@@ -22,6 +22,7 @@ class FieldWriter : public Fields {
   void angle(std::string_view name, double& value_rad, Need need) override;
   void time(std::string_view name, double& value_s, Need need) override;
   void frequencies(std::string_view name, std::vector<double>& values_hz) override;
+  void numbers(std::string_view key, std::vector<double>& values) override;
   void vector(std::string_view name, Eigen::Vector3d& value_m) override;
   void direction(std::string_view key, Eigen::Vector3d& value) override;
   void poses(std::string_view key, std::vector<Pose>& poses) override;

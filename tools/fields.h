@@ -33,6 +33,7 @@ class Fields {
   virtual void angle(std::string_view name, double& value_rad, Need need = Need::optional) = 0;
   virtual void time(std::string_view name, double& value_s, Need need = Need::optional) = 0;
   virtual void frequencies(std::string_view name, std::vector<double>& values_hz) = 0;
+  virtual void numbers(std::string_view key, std::vector<double>& values) = 0;
   virtual void vector(std::string_view name, Eigen::Vector3d& value_m) = 0;
   virtual void direction(std::string_view key, Eigen::Vector3d& value) = 0;
   virtual void poses(std::string_view key, std::vector<Pose>& poses) = 0;  // 4x4 matrices

@@ -107,6 +107,7 @@ void check_settings(const Recipe& recipe, const std::string& place) {
     check(recipe.align.icp);
     check(recipe.reconstruct.ssd);
     check(recipe.effects);
+    check_standing(recipe.scene.scene, true_poses(recipe.viewpoints));
   } catch (const Error& error) {
     throw Error(Trouble::input, place + ": " + error.what(), error.hint());
   }
@@ -125,8 +126,9 @@ Recipe read_recipe(const std::filesystem::path& path) {
   const long seed = reader.integer("seed", 1);
   if (seed < 0) reader.fail("seed", "is " + std::to_string(seed) + ", must not be negative");
   recipe.seed = static_cast<std::uint64_t>(seed);
-  recipe.scene = read_scene(reader.object("scene"), path.parent_path());
   read_part(reader, "scanner", recipe.scanner, Need::required);
+  recipe.scene =
+      read_scene(reader.object("scene"), path.parent_path(), synth::wavelength_m(recipe.scanner));
   read_part(reader, "viewpoints", recipe.viewpoints, Need::required);
   recipe.effects = read_effects(reader);
   read_part(reader, "acquire", recipe.acquire, Need::optional);

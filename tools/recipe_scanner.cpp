@@ -26,6 +26,15 @@ void select(Variant& variant, int index) {
   select(variant, index, std::make_index_sequence<std::variant_size_v<Variant>>{});
 }
 
+void three_numbers(Fields& f, const std::string& key, Eigen::Vector3d& value) {
+  std::vector<double> numbers(value.data(), value.data() + 3);
+  f.numbers(key, numbers);
+  if (numbers.size() != 3)
+    throw Error(Trouble::input, f.place() + "/" + key + ": " + std::to_string(numbers.size()) +
+                                    " numbers, must be 3");
+  value = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+}
+
 // focal_px serves both axes unless focal_y_px is given; the principal point is the image's middle.
 void camera_fields(Fields& f, Camera& c) {
   f.integer("width_px", c.width_px, Need::required);
@@ -70,6 +79,18 @@ void scanner_fields(Fields& f, LaserLine& s) {
   f.object("sensor", [&](Fields& c) { sensor_fields(c, s.sensor); });
   f.length("min_range", s.min_range_m);
   f.length("max_range", s.max_range_m);
+  f.length("wavelength", s.wavelength_m);
+  f.number("beam_quality", s.beam_quality);
+  f.length("plane_bow", s.plane_bow_m);
+  f.length("plane_shift", s.plane_shift_m);
+  f.angle("plane_turn", s.plane_turn_rad);
+  f.length("aperture", s.aperture_m);
+  f.length("lens_focus", s.lens_focus_m);
+  f.number("speckle_contrast", s.speckle_contrast);
+  f.number("exposure_share", s.exposure_share);
+  f.number("blooming_share", s.blooming_share);
+  f.number("ambient_electrons", s.ambient_electrons);
+  f.number("electrons_per_w_m2", s.electrons_per_w_m2);
 }
 
 void scanner_fields(Fields& f, StereoPair& s) {
@@ -90,6 +111,16 @@ void scanner_fields(Fields& f, StereoPair& s) {
   f.integer("projector_dots", s.projector_dots);
   f.length("focus", s.focus_m);
   f.integer("sub_rays", s.sub_rays);
+  f.length("wavelength", s.wavelength_m);
+  f.number("electrons_per_w_m2", s.electrons_per_w_m2);
+  f.length("aperture", s.aperture_m);
+  f.number("vignetting", s.vignetting);
+  three_numbers(f, "right_rotation_error_rad", s.right_rotation_error_rad);
+  f.vector("right_position_error", s.right_position_error_m);
+  three_numbers(f, "velocity_m_s", s.velocity_m_s);
+  three_numbers(f, "angular_velocity_rad_s", s.angular_velocity_rad_s);
+  f.time("row_time", s.row_time_s);
+  f.time("exposure", s.exposure_s);
   f.object("sensor", [&](Fields& inner) { sensor_fields(inner, s.sensor); });
 }
 
@@ -97,10 +128,21 @@ void scanner_fields(Fields& f, PhaseCamera& s) {
   f.object(
       "camera", [&](Fields& c) { camera_fields(c, s.camera); }, Need::required);
   f.frequencies("frequencies", s.frequencies_hz);
+  f.length("wavelength", s.wavelength_m);
   f.number("electrons_at_1m", s.electrons_at_1m);
   f.number("contrast", s.contrast);
   f.number("ambient_electrons", s.ambient_electrons);
+  f.number("electrons_per_w_m2", s.electrons_per_w_m2);
   f.length("emitter_offset", s.emitter_offset_m);
+  f.numbers("harmonics", s.harmonics);
+  f.time("tap_interval", s.tap_interval_s);
+  three_numbers(f, "velocity_m_s", s.velocity_m_s);
+  three_numbers(f, "angular_velocity_rad_s", s.angular_velocity_rad_s);
+  f.number("vignetting", s.vignetting);
+  f.length("aperture", s.aperture_m);
+  f.length("focus", s.focus_m);
+  f.length("range_offset", s.range_offset_m);
+  f.length("pixel_offset", s.pixel_offset_m);
   f.integer("sub_rays", s.sub_rays);
   f.object("sensor", [&](Fields& c) { sensor_fields(c, s.sensor); });
   f.length("max_range", s.max_range_m);
@@ -120,19 +162,43 @@ void pattern_fields(Fields& f, synth::SpinningPattern& p) {
   f.angle("highest", p.highest_rad);
 }
 
+void motion_fields(Fields& f, synth::LidarMotion& m) {
+  f.time("interval", m.interval_s);
+  three_numbers(f, "velocity_m_s", m.velocity_m_s);
+  three_numbers(f, "angular_velocity_rad_s", m.angular_velocity_rad_s);
+  f.boolean("measured", m.is_measured);
+}
+
+void range_walk_fields(Fields& f, synth::RangeWalk& w) {
+  f.time("per_decade", w.per_decade_s);
+  f.number("at_electrons", w.at_electrons);
+  f.boolean("calibrated", w.is_calibrated);
+}
+
+void gate_fields(Fields& f, synth::LidarGate& g) {
+  f.integer("samples", g.samples);
+  f.number("threshold_electrons", g.threshold_electrons);
+}
+
 void scanner_fields(Fields& f, PulsedLidar& s) {
   int pattern = static_cast<int>(s.pattern.index());
   f.one_of({"raster", "spinning"}, pattern, [&](int index, Fields& inner) {
     select(s.pattern, index);
     std::visit([&](auto& p) { pattern_fields(inner, p); }, s.pattern);
   });
+  f.length("wavelength", s.wavelength_m);
   f.time("pulse_sigma", s.pulse_sigma_s);
   f.time("sample_interval", s.sample_interval_s);
   f.number("electrons_at_10m", s.electrons_at_10m);
   f.number("ambient_electrons", s.ambient_electrons);
+  f.number("electrons_per_w_m2", s.electrons_per_w_m2);
   f.angle("divergence", s.divergence_rad);
   f.length("exit_radius", s.exit_radius_m);
   f.integer("sub_rays", s.sub_rays);
+  f.object("motion", [&](Fields& c) { motion_fields(c, s.motion); });
+  f.object("range_walk", [&](Fields& c) { range_walk_fields(c, s.range_walk); });
+  f.object("gate", [&](Fields& c) { gate_fields(c, s.gate); });
+  f.length("overlap", s.overlap_m);
   f.object("sensor", [&](Fields& c) { sensor_fields(c, s.sensor); });
   f.length("min_range", s.min_range_m);
   f.length("max_range", s.max_range_m);

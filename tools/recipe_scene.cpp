@@ -8,6 +8,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/shape_json.h"
+#include "tools/recipe_materials.h"
 
 namespace scan {
 namespace {
@@ -39,34 +40,6 @@ const typename Map::mapped_type& look_up(const Map& map, const std::string& word
   throw Error(Trouble::input,
               reader.place() + "/" + std::string(key) + ": '" + word + "' is none of " + known,
               near.empty() ? "" : "did you mean '" + near + "'?");
-}
-
-synth::Texture read_texture(JsonReader reader) {
-  if (reader.has("checker")) {
-    JsonReader inner = reader.object("checker");
-    synth::CheckerTexture checker;
-    checker.period_m = inner.length_m("period", checker.period_m);
-    checker.contrast = inner.number("contrast", checker.contrast);
-    inner.finish();
-    reader.finish();
-    return checker;
-  }
-  JsonReader inner = reader.object("noise");
-  synth::NoiseTexture noise;
-  noise.period_m = inner.length_m("period", noise.period_m);
-  noise.octaves = static_cast<int>(inner.integer("octaves", noise.octaves));
-  noise.contrast = inner.number("contrast", noise.contrast);
-  inner.finish();
-  reader.finish();
-  return noise;
-}
-
-synth::Material read_material(JsonReader reader, const std::string& name) {
-  synth::Material material{.name = name};
-  material.bsdf = synth::Lambert{reader.number("diffuse", synth::Lambert{}.albedo)};
-  if (reader.has("texture")) material.texture = read_texture(reader.object("texture"));
-  reader.finish();
-  return material;
 }
 
 Shape read_object_shape(JsonReader& reader) {
@@ -115,16 +88,15 @@ void read_object(JsonReader reader, const std::map<std::string, int>& materials,
   scene.mesh_units_m.push_back(unit_m);
 }
 
-struct TextureWriter {
-  ordered_json operator()(const synth::PlainTexture&) const { return nullptr; }
-  ordered_json operator()(const synth::CheckerTexture& t) const {
-    return {{"checker", {{"period_m", t.period_m}, {"contrast", t.contrast}}}};
+// Errors name the recipe's file as well; `place` is that of the scene in it.
+void check_at(const synth::Scene& scene, const std::string& place) {
+  try {
+    check(scene);
+  } catch (const Error& error) {
+    const std::string file = place.substr(0, place.rfind('/') + 1);
+    throw Error(error.trouble(), file + error.what(), error.hint());
   }
-  ordered_json operator()(const synth::NoiseTexture& t) const {
-    return {
-        {"noise", {{"period_m", t.period_m}, {"octaves", t.octaves}, {"contrast", t.contrast}}}};
-  }
-};
+}
 
 std::string unit_name(double unit_m) {
   for (const auto& [name, value] : mesh_units)
@@ -134,29 +106,39 @@ std::string unit_name(double unit_m) {
 
 }  // namespace
 
-RecipeScene read_scene(JsonReader reader, const std::filesystem::path& folder) {
+RecipeScene read_scene(JsonReader reader, const std::filesystem::path& folder,
+                       double wavelength_m) {
   RecipeScene scene;
   std::map<std::string, int> materials;
   JsonReader list = reader.object("materials");
   for (const std::string& name : list.keys()) {
     materials[name] = static_cast<int>(scene.scene.materials.size());
-    scene.scene.materials.push_back(read_material(list.object(name), name));
+    scene.texture_files.emplace_back();
+    scene.scene.materials.push_back(
+        read_material(list.object(name), name, wavelength_m, folder, scene.texture_files.back()));
   }
   for (JsonReader& object : reader.objects("objects"))
     read_object(std::move(object), materials, folder, scene);
+  if (scene.scene.objects.empty()) reader.fail("objects", "is empty, must have at least one");
+  if (reader.has("lights"))
+    for (JsonReader& light : reader.objects("lights")) {
+      scene.lights.push_back(read_light(std::move(light), folder));
+      scene.scene.lights.push_back(scene.lights.back().light);
+    }
+  if (reader.has("medium") && !reader.value("medium").is_null()) {
+    scene.medium = read_medium(reader.object("medium"), folder);
+    scene.scene.medium = scene.medium->medium;
+  }
   reader.finish();
-  check(scene.scene);
+  check_at(scene.scene, reader.place());
   return scene;
 }
 
 ordered_json to_json(const RecipeScene& recipe) {
   ordered_json materials = ordered_json::object(), objects = ordered_json::array();
-  for (const synth::Material& material : recipe.scene.materials) {
-    ordered_json entry = {{"diffuse", std::get<synth::Lambert>(material.bsdf).albedo}};
-    if (auto texture = std::visit(TextureWriter{}, material.texture); !texture.is_null())
-      entry["texture"] = std::move(texture);
-    materials[material.name] = std::move(entry);
-  }
+  for (std::size_t i = 0; i < recipe.scene.materials.size(); ++i)
+    materials[recipe.scene.materials[i].name] =
+        to_json(recipe.scene.materials[i], recipe.texture_files[i]);
   for (std::size_t i = 0; i < recipe.scene.objects.size(); ++i) {
     const synth::Object& object = recipe.scene.objects[i];
     ordered_json entry = {{"name", object.name}};
@@ -170,7 +152,11 @@ ordered_json to_json(const RecipeScene& recipe) {
     entry["world_from_object"] = to_json(object.world_from_object);
     objects.push_back(std::move(entry));
   }
-  return {{"objects", objects}, {"materials", materials}};
+  ordered_json lights = ordered_json::array();
+  for (const RecipeLight& light : recipe.lights) lights.push_back(to_json(light));
+  ordered_json json = {{"objects", objects}, {"materials", materials}, {"lights", lights}};
+  if (recipe.medium) json["medium"] = to_json(*recipe.medium);
+  return json;
 }
 
 }  // namespace scan

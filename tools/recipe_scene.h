@@ -5,11 +5,13 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "libscan/io/json_reader.h"
 #include "synth/scene.h"
+#include "tools/recipe_lights.h"
 
 namespace scan {
 
@@ -18,10 +20,13 @@ struct RecipeScene {
   synth::Scene scene;
   std::vector<std::filesystem::path> mesh_files;
   std::vector<double> mesh_units_m;
+  std::vector<std::filesystem::path> texture_files;  // per material, empty without a picture
+  std::vector<RecipeLight> lights;                   // as in the scene, with their files
+  std::optional<RecipeMedium> medium;
 };
 
-// Mesh files are relative to `folder`.
-RecipeScene read_scene(JsonReader reader, const std::filesystem::path& folder);
+// Files are relative to `folder`; materials have the indices of refraction at `wavelength_m`.
+RecipeScene read_scene(JsonReader reader, const std::filesystem::path& folder, double wavelength_m);
 nlohmann::ordered_json to_json(const RecipeScene& scene);
 
 }  // namespace scan

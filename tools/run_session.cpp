@@ -23,7 +23,7 @@ using nlohmann::ordered_json;
 // What each stage leaves behind, as files or folders. timings.json belongs to none: it alone may
 // differ between equal runs.
 const std::map<std::string, std::vector<std::string>> stage_outputs = {
-    {"simulate", {"effects.json", "scans", "truth", "raw"}},
+    {"simulate", {"effects.json", "simulation.json", "scans", "truth", "raw"}},
     {"align", {"alignment.json", "poses.tum"}},
     {"reconstruct", {"surface.ply", "reconstruction.json"}},
     {"verify", {"verdict.json"}}};
@@ -83,7 +83,7 @@ void declare_run_settings(CommandLine& line, RunSettings& settings) {
   line.flag("--resume", settings.resume, "continue an earlier run of the same recipe in RUN");
   line.flag("--force", settings.force, "replace an earlier run in RUN");
   line.option("--effects", settings.effects,
-              "auto, all, none, or a list (shot noise,read noise,quantisation)");
+              "auto, all, none, or a list such as shot-noise,interreflection");
   line.whole("--seed", settings.seed, 0, 1L << 62, "another seed than the recipe's");
 }
 
@@ -119,17 +119,26 @@ void RunSession::report() {
 }
 
 int RunSession::finish(const std::string& command) {
+  return finish(command, ordered_json::object(), true);
+}
+
+int RunSession::finish(const std::string& command, const ordered_json& more, bool pass) {
   ordered_json result = {{"run", run_.string()}, {"seed", recipe_.seed}};
   result["scans"] = ordered_json::array();
   const auto scans = read_run_scans(run_);
   for (std::size_t i = 0; i < scans.size(); ++i)
     result["scans"].push_back(scan_json("scans/" + scan_name(i) + ".ply", scans[i]));
   result["effects"] = read_or_empty(run_ / "effects.json");
-  bool pass = true;
+  const ordered_json costs = read_or_empty(run_ / "timings.json").value("effects", ordered_json());
+  for (auto& effect : result["effects"])
+    effect["cost_s"] = costs.value(effect.value("effect", ""), 0.0);
+  const ordered_json simulation = read_or_empty(run_ / "simulation.json");
+  for (const auto& [key, value] : simulation.items()) result[key] = value;
+  for (const auto& [key, value] : more.items()) result[key] = value;
   if (fs::exists(run_ / "verdict.json")) {
     const ordered_json verdict = read_or_empty(run_ / "verdict.json");
     for (const auto& [key, value] : verdict.items()) result[key] = value;
-    pass = verdict.value("pass", false);
+    pass = pass && verdict.value("pass", false);
     say_verdict(verdict, console_);
   }
   console_.say(run_.string() + ": " + std::to_string(scans.size()) + " scans" +

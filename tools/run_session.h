@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "libscan/io/run_folder.h"
@@ -40,8 +41,12 @@ class RunSession {
   // seconds, and stages.json is the same for equal runs.
   void report();
 
+  const Recipe& recipe() const { return recipe_; }
+
   // Prints the results that the folder holds; the exit code is 1 if there is a verdict that fails.
   int finish(const std::string& command);
+  // And `more` of them; the exit code is 1 unless `pass`, too.
+  int finish(const std::string& command, const nlohmann::ordered_json& more, bool pass);
 
  private:
   std::filesystem::path run_;

@@ -3,21 +3,21 @@
 #include "synth/effects/plan.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdio>
-#include <string_view>
+#include <iterator>
 #include <utility>
 
 #include "libscan/core/error.h"
-#include "synth/effects/sensitivity.h"
+#include "synth/effects/weight.h"
 
 namespace scan::synth {
 namespace {
 
-constexpr std::array<Effect, 3> weighed = {Effect::shot_noise, Effect::read_noise,
-                                           Effect::quantisation};
-constexpr double negligible = 0.01;  // of the scanner's own sigma
+// Of the scanner's own sigma. Five effects left out together stay below a tenth of it.
+constexpr double negligible = 0.02;
+
+constexpr std::size_t most_views = 8;  // that the pilot looks from
+constexpr int pilot_rays = 4096;       // over all of them
 
 // Levenshtein's distance.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -47,59 +47,55 @@ Effect known_effect(const std::string& word) {
               "did you mean '" + std::string(name(nearest)) + "'?");
 }
 
-// Range error of one effect if it is left out: three sigma of the noises, and what rounding by half
-// a step in every reading can do at most.
-std::array<double, 3> bounds_at(const Sensitivity& point) {
-  return {3 * point.shot_m, 3 * point.sensor.read_noise_e * point.per_electron_m,
-          point.sensor.gain_e_per_dn / 2 * point.worst_per_electron_m};
-}
-
-// The scanner's own sigma with all effects; rounding is uniform, of variance step^2 / 12.
-double sigma_at(const Sensitivity& point) {
-  const double step_e = point.sensor.gain_e_per_dn;
-  const double white_e = std::hypot(point.sensor.read_noise_e, step_e / std::sqrt(12.0));
-  return std::hypot(point.shot_m, white_e * point.per_electron_m);
-}
-
-struct Weight {
-  double bound_m = 0;  // largest over the working points
-  double share = 0;    // of the scanner's own sigma, largest over the working points
-};
-
-Weight weigh(const std::vector<Sensitivity>& points, std::size_t effect) {
-  Weight weight;
-  for (const Sensitivity& point : points) {
-    const double bound_m = bounds_at(point)[effect];
-    weight.bound_m = std::max(weight.bound_m, bound_m);
-    weight.share = std::max(weight.share, bound_m / sigma_at(point));
+// Evenly spread over the viewpoints.
+std::vector<PilotRay> pilot_all(const Scanner& scanner, const Scene& scene,
+                                std::span<const Pose> views) {
+  std::vector<PilotRay> rays;
+  if (views.empty()) return rays;
+  const RayCaster caster(scene);
+  const std::size_t count = std::min(most_views, views.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pose& view = views[i * views.size() / count];
+    auto seen = std::visit(
+        [&](const auto& s) { return pilot(s, caster, view, pilot_rays / static_cast<int>(count)); },
+        scanner);
+    rays.insert(rays.end(), std::make_move_iterator(seen.begin()),
+                std::make_move_iterator(seen.end()));
   }
-  return weight;
+  return rays;
 }
 
-std::string why(const EffectChoice& choice, const Weight& weight, bool on) {
-  char size[160];
-  std::snprintf(size, sizeof size,
-                "it moves a range by at most %.3g mm, %.3g %% of the scanner's own sigma",
-                weight.bound_m * 1e3, weight.share * 100);
-  const std::string bound = size;
-  switch (choice.kind) {
+// "0.012 mm, 3.4 % of the scanner's own sigma".
+std::string size_of(const Weight& weight) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3g mm, %.3g %% of the scanner's own sigma",
+                weight.bound_m * 1e3, weight.bound_sigma * 100);
+  return text;
+}
+
+std::string reason_of(EffectChoice::Kind kind, bool on, const Weighed& weighed) {
+  const std::string begin = on ? "On" : "Off";
+  const std::string weight = weighed.weight
+                                 ? weighed.weight->why + ": up to " + size_of(*weighed.weight)
+                                 : weighed.why_absent;
+  switch (kind) {
     case EffectChoice::Kind::automatic:
-      return on ? "On, since " + bound + "." : "Off, since " + bound + ", below 1 %.";
+      return begin + ", since " + weight + ".";
     case EffectChoice::Kind::all:
-      return "On, as all effects were asked for; " + bound + ".";
+      return begin + ", as all effects were asked for; " + weight + ".";
     case EffectChoice::Kind::none:
-      return "Off, as no effects were asked for; " + bound + ".";
+      return begin + ", as no effects were asked for; " + weight + ".";
     case EffectChoice::Kind::named:
       break;
   }
-  return (on ? "On, as named; " : "Off, as not named; ") + bound + ".";
+  return begin + (on ? ", as named; " : ", as not named; ") + weight + ".";
 }
 
 bool is_on(const EffectChoice& choice, const EffectSet& named, Effect effect,
-           const Weight& weight) {
+           const Weighed& weighed) {
   switch (choice.kind) {
     case EffectChoice::Kind::automatic:
-      return weight.share >= negligible;
+      return weighed.weight && weighed.weight->bound_sigma >= negligible;
     case EffectChoice::Kind::all:
       return true;
     case EffectChoice::Kind::none:
@@ -117,28 +113,31 @@ void check(const EffectChoice& choice) {
     for (const std::string& word : choice.names) known_effect(word);
 }
 
-EffectPlan plan_effects(const Scanner& scanner, const Scene& scene, std::span<const Pose>,
-                        const EffectChoice& choice) {
+EffectPlan plan_effects(const Scanner& scanner, const Scene& scene,
+                        std::span<const Pose> world_from_scanner, const EffectChoice& choice) {
   check(scanner);
   check(scene);
   EffectSet named;
   if (choice.kind == EffectChoice::Kind::named)
     for (const std::string& word : choice.names) named.set(known_effect(word));
-  const std::vector<Sensitivity> points = sensitivities(scanner);
+  const std::vector<PilotRay> rays = pilot_all(scanner, scene, world_from_scanner);
   EffectPlan plan;
-  for (std::size_t i = 0; i < weighed.size(); ++i) {
-    const Weight weight = weigh(points, i);
-    const bool on = is_on(choice, named, weighed[i], weight);
-    plan.push_back({weighed[i], on, why(choice, weight, on), weight.bound_m, weight.share, 0});
+  for (const Effect effect : all_effects()) {
+    const Weighed weighed =
+        std::visit([&](const auto& s) { return weigh(s, scene, effect, rays); }, scanner);
+    const bool on = is_on(choice, named, effect, weighed);
+    const Weight weight = weighed.weight.value_or(Weight{});
+    plan.push_back({effect, on, reason_of(choice.kind, on, weighed), weight.bound_m,
+                    weight.bound_sigma, 0});
   }
-  plan.push_back({Effect::footprint, true, "On, as the recipe's sub-rays say.", 0, 0, 0});
   return plan;
 }
 
 EffectSet effects_of(const EffectPlan& plan) {
   EffectSet effects;
   for (const EffectDecision& decision : plan) effects.set(decision.effect, decision.on);
-  return effects;
+  const bool all = std::all_of(plan.begin(), plan.end(), [](const auto& d) { return d.on; });
+  return all ? EffectSet::all() : effects;
 }
 
 }  // namespace scan::synth

@@ -36,6 +36,7 @@ void check(const EffectChoice& choice);
 // moves no range by more than a small share of the scanner's own sigma. Throws what check throws.
 EffectPlan plan_effects(const Scanner& scanner, const Scene& scene,
                         std::span<const Pose> world_from_scanner, const EffectChoice& choice);
-EffectSet effects_of(const EffectPlan& plan);  // those that are on
+// Those that are on; if all are, everywhere.
+EffectSet effects_of(const EffectPlan& plan);
 
 }  // namespace scan::synth

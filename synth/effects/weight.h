@@ -7,6 +7,7 @@
 //   weigh(): the bound of one effect, from closed forms of the scanner's physics at those rays.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,6 +29,8 @@ struct PilotRay {
   double indirect_share = 0;
   double indirect_extra_m = 0;
   bool met_smooth = false;  // a mirror or clear body stands in the way of ray or light
+  // Range error if an effect is left out, where the pilot itself found it.
+  std::array<double, effect_count> left_out_m{};
 };
 
 std::vector<PilotRay> pilot(const LaserLine& scanner, const RayCaster& caster,

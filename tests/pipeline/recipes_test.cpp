@@ -16,7 +16,7 @@ std::vector<std::string> recipes() {
   std::vector<std::string> names;
   for (const auto& entry :
        std::filesystem::directory_iterator(LIBSCAN_SOURCE_DIR "/datasets/recipes"))
-    names.push_back(entry.path().stem().string());
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
 }

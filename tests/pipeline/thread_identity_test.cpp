@@ -49,7 +49,7 @@ std::string recipe_for(const Device& device) {
     "viewpoints": { "ring": { "count": 6, "radius_mm": )" +
          device.radius + R"(,
       "pose_noise": { "rotation_deg": 0.5, "translation_mm": 0.5 } } },
-    "effects": "all",
+    "effects": [ "shot-noise", "read-noise", "quantisation", "footprint" ],
     "reconstruct": { "depth": 5 }, "verify": { "samples": 2000 } })";
 }
 

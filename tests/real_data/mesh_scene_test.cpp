@@ -33,7 +33,7 @@ nlohmann::json recipe() {
               {"radius_m", 3},
               {"lowest_deg", -60},
               {"pose_noise", {{"rotation_deg", 0.5}, {"translation_mm", 10}}}}}}},
-          {"effects", "all"},
+          {"effects", {"shot-noise", "read-noise", "quantisation", "footprint"}},
           {"reconstruct", {{"method", "ssd"}, {"depth", 7}}},
           {"verify", {{"seen_distance_mm", 20}}},
           {"limits", nlohmann::json::array()}};

@@ -155,6 +155,7 @@ std::string seconds_table(const ordered_json& seconds) {
   std::string html =
       "\n<table id=\"seconds\"><tr><th>stage</th><th class=\"number\">seconds</th></tr>";
   for (const auto& [stage, value] : seconds.items()) {
+    if (!value.is_number()) continue;  // what each effect cost, see the effects
     char text[32];
     std::snprintf(text, sizeof text, "%.2f", value.get<double>());
     html += "<tr>" + cell(stage) + cell(text, true) + "</tr>";
