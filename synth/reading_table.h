@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Readings of pixels that all expect the same light, such as the dark part of a waveform.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "synth/detector.h"
+
+namespace scan::synth {
+
+// Draws what read_pixel() would, from its distribution tabulated once: the sum over Poisson's
+// counts of the normal distribution between rounding edges, right to 2^-48. Half a word of the
+// stream per reading instead of dozens.
+class ReadingTable {
+ public:
+  ReadingTable(const Sensor& sensor, const DetectorEffects& effects, double expected_e);
+
+  std::uint16_t draw(RandomStream& random) const;
+  void draw(RandomStream& random, std::span<std::uint16_t> readings) const;
+  // The reading that a number of 48 bits stands for.
+  std::uint16_t reading_at(std::uint64_t u) const;
+
+ private:
+  void tabulate(const std::vector<double>& cumulative);
+  std::uint16_t reading_of(std::uint32_t half_word, RandomStream& random) const;
+
+  Sensor sensor_;
+  DetectorEffects effects_;
+  double expected_e_;
+  int first_dn_ = 0;
+  std::vector<std::uint64_t> limits_;  // outcome d has u < limits_[d]; empty: read_pixel() draws
+  std::array<std::int32_t, 4096> quick_{};  // the reading by the 12 highest bits; -1: it takes more
+};
+
+}  // namespace scan::synth
