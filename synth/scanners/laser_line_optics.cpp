@@ -6,8 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-namespace scan::synth {
+#include "synth/frame_about.h"
 
+namespace scan::synth {
 namespace {
 
 // How a surface reflects, in a frame whose z is the hit's normal.
@@ -18,8 +19,7 @@ struct Reflector {
 
   Reflector(const Scene& scene, const Hit& hit, const Eigen::Vector3d& out_in_world)
       : bsdf(bsdf_at(scene, hit.object, hit.point)) {
-    const Eigen::Vector3d x = hit.normal.unitOrthogonal();
-    local_from_world << x.transpose(), hit.normal.cross(x).transpose(), hit.normal.transpose();
+    local_from_world = frame_about(hit.normal).transpose();
     out = local_from_world * out_in_world;
   }
   // Electrons by an irradiance (facing the light) of so many electrons on white Lambert: pi f cos.

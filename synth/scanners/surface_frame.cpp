@@ -2,26 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "synth/scanners/surface_frame.h"
 
-#include <cmath>
 #include <numbers>
 
+#include "synth/frame_about.h"
+
 namespace scan::synth {
-namespace {
-
-// A right-handed frame whose z axis is `normal` (Duff et al. 2017, "Building an Orthonormal Basis,
-// Revisited").
-Eigen::Matrix3d frame_about(const Eigen::Vector3d& normal) {
-  const double sign = std::copysign(1.0, normal.z());
-  const double a = -1 / (sign + normal.z());
-  const double b = normal.x() * normal.y() * a;
-  Eigen::Matrix3d frame;
-  frame.col(0) << 1 + sign * normal.x() * normal.x() * a, sign * b, -sign * normal.x();
-  frame.col(1) << b, sign + normal.y() * normal.y() * a, -normal.y();
-  frame.col(2) = normal;
-  return frame;
-}
-
-}  // namespace
 
 SurfaceFrame::SurfaceFrame(const SeenSurface& seen, const Scene& scene)
     : scanner_from_local_(frame_about(seen.normal)),

@@ -4,16 +4,10 @@
 
 #include <cmath>
 
+#include "synth/frame_about.h"
+
 namespace scan::synth {
 namespace {
-
-Eigen::Matrix3d frame_about(const Eigen::Vector3d& normal) {
-  Eigen::Matrix3d frame;
-  frame.col(2) = normal;
-  frame.col(0) = normal.unitOrthogonal();
-  frame.col(1) = normal.cross(frame.col(0));
-  return frame;
-}
 
 Eigen::Vector3d local(const Vertex& vertex, const Eigen::Vector3d& direction) {
   return vertex.world_from_local.transpose() * direction;
