@@ -76,7 +76,7 @@ std::string size_of(const Weight& weight) {
 std::string reason_of(EffectChoice::Kind kind, bool on, const Weighed& weighed) {
   const std::string begin = on ? "On" : "Off";
   const std::string weight = weighed.weight
-                                 ? weighed.weight->why + ": up to " + size_of(*weighed.weight)
+                                 ? weighed.weight->why + " (bound " + size_of(*weighed.weight) + ")"
                                  : weighed.why_absent;
   switch (kind) {
     case EffectChoice::Kind::automatic:
@@ -127,8 +127,8 @@ EffectPlan plan_effects(const Scanner& scanner, const Scene& scene,
         std::visit([&](const auto& s) { return weigh(s, scene, effect, rays); }, scanner);
     const bool on = is_on(choice, named, effect, weighed);
     const Weight weight = weighed.weight.value_or(Weight{});
-    plan.push_back({effect, on, reason_of(choice.kind, on, weighed), weight.bound_m,
-                    weight.bound_sigma, 0});
+    plan.push_back(
+        {effect, on, reason_of(choice.kind, on, weighed), weight.bound_m, weight.bound_sigma, 0});
   }
   return plan;
 }
