@@ -108,7 +108,7 @@ struct KdTree::Tree {
 
   template <class Collector>
   void search(const Eigen::Vector3d& query, Collector& collector) const {
-    if (points == 0) return;
+    if (points == 0 || !query.allFinite()) return;
     Screen<Collector> screen(frame, query, collector);
     std::array<Visit, 33> stack;  // one a level, and 2^32 leaves have 32
     Visit* top = stack.data();
@@ -141,8 +141,8 @@ std::size_t KdTree::size() const {
   return tree_->points;
 }
 
-std::optional<Neighbour> KdTree::nearest(const Eigen::Vector3d& query,
-                                         double max_distance_m) const {
+std::optional<Neighbour> KdTree::nearest(const Eigen::Vector3d& query, double max_distance_m,
+                                         std::uint32_t) const {
   NearestCollector collector(max_distance_m);
   tree_->search(query, collector);
   return collector.take();

@@ -150,7 +150,7 @@ struct Octree::Tree {
 
   template <class Collector>
   void visit(const Eigen::Vector3d& query, Collector& collector) const {
-    if (points == 0) return;
+    if (points == 0 || !query.allFinite()) return;
     Screen<Collector> screen(frame, query, collector);
     search(root, screen);
   }
@@ -172,8 +172,8 @@ std::size_t Octree::size() const {
   return tree_->points;
 }
 
-std::optional<Neighbour> Octree::nearest(const Eigen::Vector3d& query,
-                                         double max_distance_m) const {
+std::optional<Neighbour> Octree::nearest(const Eigen::Vector3d& query, double max_distance_m,
+                                         std::uint32_t) const {
   NearestCollector collector(max_distance_m);
   tree_->visit(query, collector);
   return collector.take();
