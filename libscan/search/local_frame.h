@@ -5,6 +5,7 @@
 // libscan/search.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -46,6 +47,10 @@ std::vector<LocalPoint> local_points(std::span<const Eigen::Vector3d> points_m,
 // value of d'^2, of a sum of three squares of differences, is d'^2 (1 + t), |t| <= 6 * 2^-24. So a
 // point with d <= L has a float value of at most (L + slack)^2 (1 + 2^-20), rounding of this bound
 // and of the double values included. The same holds for the distance to a box of rounded points.
+//
+// Conversely a point with the float value f has d <= sqrt(f) (1 + 2^-22) + slack. So all that may
+// be as near as it have float values of at most (sqrt(f) (1 + 2^-22) + 2 slack)^2 (1 + 2^-20);
+// computed in float, with six more roundings of 2^-24, by tree_walk.h with 2^-19 and 2^-18.
 struct LocalQuery {
   LocalQuery(const LocalFrame& frame, const Eigen::Vector3d& query_m);
 
@@ -57,6 +62,9 @@ struct LocalQuery {
     constexpr double largest = std::numeric_limits<float>::max();
     return bound < largest ? static_cast<float>(bound) : std::numeric_limits<float>::infinity();
   }
+
+  // By how much the float distances of two points may differ while their true ones are equal.
+  float widening() const { return static_cast<float>(std::min(2 * slack, 1e38)); }
 
   Eigen::Vector3d at_m;
   std::array<float, 3> at;
