@@ -42,6 +42,15 @@ void offer_all(const BoxTree& tree, const LocalQuery& query, TreeQuery at, Colle
   }
 }
 
+// The nearest point where several are as near as float can tell. `found`: one of them, or nothing.
+std::optional<Neighbour> nearest_of_rivals(const BoxTree& tree, const LocalQuery& query,
+                                           double max_distance_m, std::uint32_t found) {
+  NearestCollector collector(max_distance_m);
+  if (found != nothing) collector.offer(exact(tree, found, query.at_m));
+  offer_all(tree, query, raw(query, collector.limit2_m2()), collector);
+  return collector.take();
+}
+
 // Offers the k nearest, and perhaps more; false if rounding leaves it open which they are. Then
 // all of them are within the limit, to which `at` is narrowed.
 bool offer_few(const BoxTree& tree, const LocalQuery& query, TreeQuery& at, std::size_t k,
@@ -73,16 +82,17 @@ std::size_t BoxSearch::size() const {
 
 std::optional<Neighbour> BoxSearch::nearest(const Eigen::Vector3d& query_m, double max_distance_m,
                                             std::uint32_t guess) const {
-  NearestCollector collector(max_distance_m);
-  if (tree_->points == 0 || !query_m.allFinite() || collector.limit2_m2() < 0) return std::nullopt;
+  const double limit2_m2 = squared_limit_m2(max_distance_m);
+  if (tree_->points == 0 || !query_m.allFinite() || limit2_m2 < 0) return std::nullopt;
   const LocalQuery query(tree_->frame, query_m);
-  TreeQuery at = raw(query, collector.limit2_m2());
+  TreeQuery at = raw(query, limit2_m2);
   if (guess < tree_->place_of.size() && tree_->place_of[guess] != nothing)
     at.first_leaf = tree_->place_of[guess] / leaf_width;
   const RawNearest found = tree_->kernels->nearest(tree_->view(), at);
-  if (found.place != nothing) collector.offer(exact(*tree_, found.place, query_m));
-  if (found.unsure) offer_all(*tree_, query, raw(query, collector.limit2_m2()), collector);
-  return collector.take();
+  if (found.unsure) return nearest_of_rivals(*tree_, query, max_distance_m, found.place);
+  if (found.place == nothing) return std::nullopt;
+  const Neighbour neighbour = exact(*tree_, found.place, query_m);
+  return neighbour.distance2_m2 <= limit2_m2 ? std::optional(neighbour) : std::nullopt;
 }
 
 void BoxSearch::k_nearest(const Eigen::Vector3d& query_m, std::size_t k,
