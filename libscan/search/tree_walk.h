@@ -14,12 +14,6 @@
 namespace scan {
 namespace {
 
-// The largest squared float distance of a point that may in truth be as near as one at distance2.
-inline float widened(float distance2, float widening) {
-  const float distance = __builtin_sqrtf(distance2) * (1 + 0x1p-19f) + widening;
-  return distance * distance * (1 + 0x1p-18f);
-}
-
 inline int first_of(std::uint32_t lanes) {
   return __builtin_ctz(lanes);
 }
