@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "libscan/search/large_array.h"
 #include "libscan/search/neighbour_search.h"
 
 namespace scan {
@@ -42,9 +43,9 @@ struct LocalFrame {
 // The frame of the finite points.
 LocalFrame local_frame(std::span<const Eigen::Vector3d> points_m);
 
-// The finite points in the frame.
-std::vector<LocalPoint> local_points(std::span<const Eigen::Vector3d> points_m,
-                                     const LocalFrame& frame);
+// The finite points in the frame, in their order.
+LargeArray<LocalPoint> local_points(std::span<const Eigen::Vector3d> points_m,
+                                    const LocalFrame& frame);
 
 // A query in the frame.
 //

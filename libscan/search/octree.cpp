@@ -142,7 +142,7 @@ struct Branch {
 
 BoxTree build_octree(std::span<const Eigen::Vector3d> points_m) {
   BoxTree tree = empty_tree(points_m);
-  std::vector<LocalPoint> local = local_points(points_m, tree.frame);
+  LargeArray<LocalPoint> local = local_points(points_m, tree.frame);
   tree.points = local.size();
   if (local.empty()) return tree;
   Branch branch;

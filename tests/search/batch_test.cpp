@@ -107,6 +107,23 @@ TEST_P(EachBatch, LaysTheKNearestInRows) {
   }
 }
 
+TEST_P(EachBatch, GathersAllWithinARadius) {
+  std::visit(
+      [&](const auto& search) {
+        const Neighbourhoods all = within_of_each(search, queries_, 2 * spacing_m, order_);
+        ASSERT_EQ(all.first.size(), queries_.size() + 1);
+        EXPECT_EQ(all.first.back(), all.found.size());
+        EXPECT_GT(all.found.size(), queries_.size());
+        std::vector<Neighbour> mine;
+        for (std::size_t i = 0; i < queries_.size(); ++i) {
+          search.within(queries_[i], 2 * spacing_m, mine);
+          ASSERT_EQ(all.first[i + 1] - all.first[i], mine.size()) << "query " << i;
+          EXPECT_TRUE(std::equal(mine.begin(), mine.end(), &all.found[all.first[i]]));
+        }
+      },
+      any_);
+}
+
 TEST_P(EachBatch, AnswersTheSameForAnyNumberOfThreads) {
   std::vector<Neighbour> found[2];
   for (const int threads : {1, 3}) {

@@ -194,7 +194,9 @@ class Inspection {
 };
 
 TEST(BoxTree, HoldsEachFinitePointOnceInItsBoxes) {
-  for (const auto& [name, points] : hard_clouds(3000))
+  std::vector<NamedCloud> clouds = hard_clouds(3000);
+  clouds.push_back({"built by many tasks", with_holes(clustered_cloud(60000))});
+  for (const auto& [name, points] : clouds)
     for (const Build build : builds) {
       SCOPED_TRACE(name);
       const BoxTree tree = build(points);

@@ -57,7 +57,7 @@ TEST(LocalQuery, WidensEnoughForEveryPointThatIsAsNear) {
   std::size_t nearly_equal = 0;
   for (const auto& [name, points] : hard_clouds(300)) {
     const LocalFrame frame = local_frame(points);
-    const std::vector<LocalPoint> local = local_points(points, frame);
+    const LargeArray<LocalPoint> local = local_points(points, frame);
     for (std::size_t i = 0; i + 1 < local.size(); ++i) {
       const Eigen::Vector3d &a = points[local[i].index], &b = points[local[i + 1].index];
       // Near the plane between the two.
