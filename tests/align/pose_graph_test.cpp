@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "libscan/core/error.h"
-#include "pose_graphs.h"
+#include "tests/align/pose_graphs.h"
 
 namespace scan {
 namespace {

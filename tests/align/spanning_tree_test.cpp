@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pose_graphs.h"
+#include "tests/align/pose_graphs.h"
 
 namespace scan {
 namespace {
