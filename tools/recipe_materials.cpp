@@ -87,14 +87,18 @@ Image<std::uint8_t> read_grey_at(const std::filesystem::path& file, const std::s
   }
 }
 
-synth::ImageTexture read_picture(JsonReader reader, const std::filesystem::path& folder,
-                                 std::filesystem::path& picture) {
+// Upon a plane of the object by its width, else laid on the mesh by its texture coordinates.
+synth::Texture read_picture(JsonReader reader, const std::filesystem::path& folder,
+                            std::filesystem::path& picture) {
   picture = std::filesystem::absolute(folder / reader.text("file")).lexically_normal();
-  synth::ImageTexture texture{.factors = {}, .width_m = reader.length_m("width")};
   const Image<std::uint8_t> grey = read_grey_at(picture, reader.place());
-  texture.factors = Image<float>(grey.width, grey.height);
+  Image<float> factors(grey.width, grey.height);
   for (std::size_t i = 0; i < grey.pixels.size(); ++i)
-    texture.factors.pixels[i] = static_cast<float>(grey.pixels[i]) / 255;
+    factors.pixels[i] = static_cast<float>(grey.pixels[i]) / 255;
+  synth::Texture texture = synth::MeshTexture{factors};
+  if (reader.has_quantity("width"))
+    texture =
+        synth::ImageTexture{.factors = std::move(factors), .width_m = reader.length_m("width")};
   reader.finish();
   return texture;
 }
@@ -133,6 +137,9 @@ struct TextureWriter {
   }
   ordered_json operator()(const synth::ImageTexture& t) const {
     return {{"picture", {{"file", picture.string()}, {"width_m", t.width_m}}}};
+  }
+  ordered_json operator()(const synth::MeshTexture&) const {
+    return {{"picture", {{"file", picture.string()}}}};
   }
   ordered_json operator()(const synth::NoiseTexture& t) const {
     return {
