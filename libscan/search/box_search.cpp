@@ -15,7 +15,7 @@ namespace {
 // not all of them rival the k-th, none that does was dropped.
 constexpr std::size_t few = 60, spare = 4, insert_width = 8;
 
-TreeQuery raw(const LocalQuery& query, double limit2_m2) {
+TreeQuery tree_query(const LocalQuery& query, double limit2_m2) {
   return {
       {query.at[0], query.at[1], query.at[2]}, query.limit2(limit2_m2), query.widening(), nothing};
 }
@@ -48,7 +48,7 @@ std::optional<Neighbour> nearest_of_rivals(const BoxTree& tree, const LocalQuery
                                            double max_distance_m, std::uint32_t found) {
   NearestCollector collector(max_distance_m);
   if (found != nothing) collector.offer(exact(tree, found, query.at_m));
-  offer_all(tree, query, raw(query, collector.limit2_m2()), collector);
+  offer_all(tree, query, tree_query(query, collector.limit2_m2()), collector);
   return collector.take();
 }
 
@@ -95,7 +95,7 @@ std::optional<Neighbour> BoxSearch::nearest(const Eigen::Vector3d& query_m, doub
   const double limit2_m2 = squared_limit_m2(max_distance_m);
   if (tree_->points == 0 || !query_m.allFinite() || limit2_m2 < 0) return std::nullopt;
   const LocalQuery query(tree_->frame, query_m);
-  TreeQuery at = raw(query, limit2_m2);
+  TreeQuery at = tree_query(query, limit2_m2);
   if (guess < tree_->place_of.size() && tree_->place_of[guess] != nothing)
     at.first_leaf = tree_->place_of[guess] / leaf_width;
   const RawNearest found = tree_->kernels->nearest(tree_->view(), at);
@@ -111,7 +111,7 @@ void BoxSearch::k_nearest(const Eigen::Vector3d& query_m, std::size_t k,
   found.clear();
   if (k == 0 || !query_m.allFinite()) return;
   const LocalQuery query(tree_->frame, query_m);
-  TreeQuery at = raw(query, unlimited_m);
+  TreeQuery at = tree_query(query, unlimited_m);
   if (k <= few && find_few(*tree_, query, at, k, found)) return;
   NearestKCollector collector(k, found);
   offer_all(*tree_, query, at, collector);
@@ -123,7 +123,7 @@ void BoxSearch::within(const Eigen::Vector3d& query_m, double radius_m,
   WithinCollector collector(radius_m, found);
   if (tree_->points == 0 || !query_m.allFinite() || collector.limit2_m2() < 0) return;
   const LocalQuery query(tree_->frame, query_m);
-  offer_all(*tree_, query, raw(query, collector.limit2_m2()), collector);
+  offer_all(*tree_, query, tree_query(query, collector.limit2_m2()), collector);
   collector.finish();
 }
 

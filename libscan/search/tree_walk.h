@@ -140,13 +140,14 @@ LeafHits next_leaf(const TreeView& tree, const TreeQuery& query, TreeWalk& walk)
   Walker walker(tree, query, walk);
   std::uint32_t leaf = walk.begun ? walker.next(query.limit2) : walker.first(query.limit2);
   walk.begun = true;
-  LeafHits hits{nothing, 0};
-  for (; leaf != nothing && hits.lanes == 0;) {
-    hits = {leaf, not_above(point_distances2(tree.leaves[leaf], walker.query()), query.limit2)};
-    if (hits.lanes == 0) leaf = walker.next(query.limit2);
+  std::uint32_t lanes = 0;
+  while (leaf != nothing) {
+    lanes = not_above(point_distances2(tree.leaves[leaf], walker.query()), query.limit2);
+    if (lanes != 0) break;
+    leaf = walker.next(query.limit2);
   }
   walk.end = walker.end();
-  return hits;
+  return {leaf, lanes};
 }
 
 }  // namespace

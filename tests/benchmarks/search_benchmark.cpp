@@ -193,7 +193,9 @@ bool time_questions(const Work& work, int rounds) {
                                      model<KdTree>(work),    model<Octree>(work),
                                      model<PclOctree>(work), model<BruteForce>(work)};
   bool agree = true;
-  for (const auto& [ask, name] : questions) {
+  for (const auto& question : questions) {
+    const Ask ask = question.first;
+    const char* const name = question.second;
     std::vector<std::vector<double>> times(rivals.size());
     for (int round = 0; round < rounds; ++round)
       for (std::size_t i = 0; i < rivals.size(); ++i) {
