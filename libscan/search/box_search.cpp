@@ -11,9 +11,10 @@
 namespace scan {
 namespace {
 
-// Up to here the k nearest are sorted in the kernel. It keeps `spare` more at least: as long as
-// not all of them rival the k-th, none that does was dropped.
-constexpr std::size_t few = 60, spare = 4, insert_width = 8;
+// Up to `few`, the k nearest are sorted in the kernel. It keeps `spare` more at least: as long as
+// not all of them rival the k-th, none that does was dropped. On lattices more do; then `most` are
+// kept.
+constexpr std::size_t few = 60, spare = 4, insert_width = 8, most = few + spare;
 
 TreeQuery tree_query(const LocalQuery& query, double limit2_m2) {
   return {
@@ -43,27 +44,21 @@ void offer_all(const BoxTree& tree, const LocalQuery& query, TreeQuery at, Colle
   }
 }
 
-// The nearest point where several are as near as float can tell. `found`: one of them, or nothing.
-std::optional<Neighbour> nearest_of_rivals(const BoxTree& tree, const LocalQuery& query,
-                                           double max_distance_m, std::uint32_t found) {
-  NearestCollector collector(max_distance_m);
-  if (found != nothing) collector.offer(exact(tree, found, query.at_m));
-  offer_all(tree, query, tree_query(query, collector.limit2_m2()), collector);
-  return collector.take();
-}
-
 // Finds the k nearest; false if rounding leaves it open which they are. Then all of them are within
 // the limit, to which `at` is narrowed.
 bool find_few(const BoxTree& tree, const LocalQuery& query, TreeQuery& at, std::size_t k,
               std::vector<Neighbour>& found) {
-  alignas(64) std::uint64_t best[few + spare];
-  const std::size_t kept = (k + spare + insert_width - 1) / insert_width * insert_width;
-  at.limit2 =
-      tree.kernels->k_nearest(tree.view(), at, static_cast<int>(k), static_cast<int>(kept), best);
+  alignas(64) std::uint64_t best[most];
   const auto rivals = [&](std::uint64_t entry) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(entry >> 32)) <= at.limit2;
   };
-  if (rivals(best[kept - 1])) return false;
+  for (std::size_t kept = (k + spare + insert_width - 1) / insert_width * insert_width;;) {
+    at.limit2 =
+        tree.kernels->k_nearest(tree.view(), at, static_cast<int>(k), static_cast<int>(kept), best);
+    if (!rivals(best[kept - 1])) break;
+    if (kept == most) return false;
+    kept = most;
+  }
   std::size_t count = k;
   while (rivals(best[count])) ++count;
   // First all distances, so that the processor waits for all records at once; then the order, which
@@ -99,10 +94,12 @@ std::optional<Neighbour> BoxSearch::nearest(const Eigen::Vector3d& query_m, doub
   if (guess < tree_->place_of.size() && tree_->place_of[guess] != nothing)
     at.first_leaf = tree_->place_of[guess] / leaf_width;
   const RawNearest found = tree_->kernels->nearest(tree_->view(), at);
-  if (found.unsure) return nearest_of_rivals(*tree_, query, max_distance_m, found.place);
-  if (found.place == nothing) return std::nullopt;
-  const Neighbour neighbour = exact(*tree_, found.place, query_m);
-  return neighbour.distance2_m2 <= limit2_m2 ? std::optional(neighbour) : std::nullopt;
+  NearestCollector collector(max_distance_m);
+  for (std::uint32_t i = 0; i < std::min(found.count, RawNearest::kept); ++i)
+    collector.offer(exact(*tree_, found.places[i], query_m));
+  if (found.count > RawNearest::kept)
+    offer_all(*tree_, query, tree_query(query, collector.limit2_m2()), collector);
+  return collector.take();
 }
 
 void BoxSearch::k_nearest(const Eigen::Vector3d& query_m, std::size_t k,

@@ -49,11 +49,12 @@ struct TreeQuery {
   std::uint32_t first_leaf;  // to look into before all others; or nothing
 };
 
-// A place is leaf * leaf_width + lane; nothing: no point is within the limit, or all are infinitely
-// far in float. `unsure`: another point may be as near in truth.
+// The points that may be the nearest in truth. A place is leaf * leaf_width + lane; if there are
+// more than are kept, `count` tells it.
 struct RawNearest {
-  std::uint32_t place;
-  bool unsure;
+  static constexpr std::uint32_t kept = 4;
+  std::uint32_t places[kept];
+  std::uint32_t count;
 };
 
 // The largest squared float distance of a point that may in truth be as near as one at distance2.

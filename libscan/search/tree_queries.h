@@ -11,27 +11,26 @@
 namespace scan {
 namespace {
 
-// The nearest point so far, and whether another may be as near.
+// The points so far that may be the nearest.
 struct Best {
-  float distance2 = __builtin_inff();
+  float distance2 = __builtin_inff();  // of the nearest by float
   float limit2;
-  RawNearest found = {nothing, false};
+  RawNearest found = {{}, 0};
 
   void look_into(std::uint32_t leaf, const Sixteen& leaf_distance2, float widening) {
-    const std::uint32_t near = not_above(leaf_distance2, limit2);
+    std::uint32_t near = not_above(leaf_distance2, limit2);
     if (near == 0) return;
     const float least = least_of(leaf_distance2, near);
-    if (!(least < distance2)) {
-      found.unsure = true;
-      return;
+    if (least < distance2) {
+      const float new_limit2 = widened(least, widening);
+      limit2 = new_limit2 < limit2 ? new_limit2 : limit2;
+      if (distance2 > limit2) found.count = 0;  // and the others are not nearer
+      distance2 = least;
+      near = not_above(leaf_distance2, limit2);
     }
-    const float new_limit2 = widened(least, widening);
-    limit2 = new_limit2 < limit2 ? new_limit2 : limit2;
-    const std::uint32_t rivals = not_above(leaf_distance2, limit2);
-    found.unsure = distance2 <= limit2 || (rivals & (rivals - 1)) != 0;
-    found.place =
-        leaf * leaf_width + static_cast<std::uint32_t>(first_of(not_above(leaf_distance2, least)));
-    distance2 = least;
+    for (; near != 0; near &= near - 1, ++found.count)
+      if (found.count < RawNearest::kept)
+        found.places[found.count] = leaf * leaf_width + static_cast<std::uint32_t>(first_of(near));
   }
 };
 

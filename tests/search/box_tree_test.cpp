@@ -48,8 +48,7 @@ TreeQuery raw(const BoxTree& tree, const Eigen::Vector3d& query_m, double limit2
 // All that the kernels return for a query: nearest, ten nearest, and the walk through all leaves
 // within the distance of the nearest but sixty.
 struct KernelAnswer {
-  std::uint32_t place = 0;
-  bool unsure = false;
+  std::vector<std::uint32_t> nearest;
   float limit2 = 0;
   std::array<std::uint64_t, 16> best{};
   std::vector<std::uint32_t> walk;
@@ -60,8 +59,8 @@ KernelAnswer answer(const TreeKernels& kernels, const BoxTree& tree, const Eigen
                     double limit2_m2) {
   KernelAnswer of;
   const RawNearest nearest = kernels.nearest(tree.view(), raw(tree, query_m, unlimited_m));
-  of.place = nearest.place;
-  of.unsure = nearest.unsure;
+  of.nearest.assign(nearest.places, nearest.places + std::min(nearest.count, RawNearest::kept));
+  of.nearest.push_back(nearest.count);
   alignas(64) std::uint64_t best[16];
   of.limit2 = kernels.k_nearest(tree.view(), raw(tree, query_m, unlimited_m), 10, 16, best);
   std::copy(best, best + 16, of.best.begin());
