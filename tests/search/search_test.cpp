@@ -185,6 +185,31 @@ TEST_P(EachMethod, ResolvesPointsThatAreOneInFloat) {
   }
 }
 
+// Two groups of points on two sides of the query, in leaves of their own: the nearest ones differ
+// in distance by 1e-8, less than float tells, so either group may seem to have the nearest.
+TEST_P(EachMethod, DecidesBetweenTwoSidesThatAreOneInFloat) {
+  RandomStream random(14, 0, 0);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Eigen::Vector3d query = in_cube(random), side = normal_vector(random).normalized();
+    Points points = {query + Eigen::Vector3d(5, 4, 3)};  // so that rounding is not symmetrical
+    for (int i = 0; i < 20; ++i)
+      for (const double sign : {-1.0, 1.0}) {
+        const double distance = i == 0 ? 1 + 1e-8 * random.uniform() : 1.2 + 0.01 * i;
+        points.push_back(query + sign * distance * side);
+      }
+    const Answer expected = sorted_by_distance(points, query);
+    const AnySearch any = make_search(GetParam(), points);
+    std::visit(
+        [&](const auto& search) {
+          EXPECT_EQ(search.nearest(query), expected.front());
+          Answer found;
+          search.k_nearest(query, 1, found);
+          EXPECT_EQ(found, first(expected, 1));
+        },
+        any);
+  }
+}
+
 TEST_P(EachMethod, AnswersAreTheSameForAnyNumberOfThreads) {
   const Points points = surface_cloud(30000);
   std::vector<Answer> answers[2];
