@@ -177,6 +177,11 @@ double fog_pull_m(const EchoNoise& echo, double floor_e2, double near_e) {
   return 1.5 * echo.m_per_sample * pull / information;
 }
 
+// Electrons that an echo needs to stand out: six sigma of the floor under its own width.
+double least_echo_e(const PulsedLidar& s, double width) {
+  return 6 * std::sqrt(width * std::sqrt(pi) * floor_variance_e2(s));
+}
+
 // Besides, what is lost of the echo makes its noise larger; and fog that stands above the
 // threshold, of which half is enough here, is an echo itself.
 void weigh_fog(const PilotScan& scan, double electrons, PilotRay& ray) {
@@ -196,21 +201,24 @@ void weigh_fog(const PilotScan& scan, double electrons, PilotRay& ray) {
   const double noise_m =
       sigmas * (dimmed.all_m(floor_e2 + near_e) - echo_noise(s, electrons).all_m(floor_e2));
   const double highest_e = *std::max_element(scan.endless_e.begin(), scan.endless_e.end());
-  const double threshold_e = 6 * std::sqrt(dimmed.width * std::sqrt(pi) * floor_e2);
-  const bool is_echo = highest_e * dimmed.width * std::sqrt(2 * pi) > threshold_e / 2;
+  const bool is_echo =
+      highest_e * dimmed.width * std::sqrt(2 * pi) > least_echo_e(s, dimmed.width) / 2;
   left_out(ray, Effect::medium) =
       is_echo ? ray.range_m : std::min(pull_m, dimmed.half_window_m()) + noise_m;
 }
 
-void weigh_walk(const PulsedLidar& s, double electrons, PilotRay& ray) {
+// What is calibrated is known but for the noise of log10(N); else a tenth for sampling and the fit.
+// Behind glass or in a mirror the echo may be as weak as any that is found.
+void weigh_walk(const PulsedLidar& s, const EchoNoise& echo, PilotRay& ray) {
   const double decade_m = half_c * std::abs(s.range_walk.per_decade_s);
-  const double total_e = std::max(electrons, 1.0);
-  // What is calibrated is known but for the noise of log10(N); else a tenth for sampling and the
-  // fit.
+  const double least_e = ray.met_smooth ? least_echo_e(s, echo.width) : echo.total_e;
+  const auto decades = [&](double electrons) {
+    return std::abs(std::log10(electrons / s.range_walk.at_electrons));
+  };
   left_out(ray, Effect::range_walk) =
       s.range_walk.is_calibrated
-          ? sigmas * decade_m / std::numbers::ln10 / std::sqrt(total_e)
-          : 1.1 * decade_m * std::abs(std::log10(total_e / s.range_walk.at_electrons));
+          ? sigmas * decade_m / std::numbers::ln10 / std::sqrt(std::min(least_e, echo.total_e))
+          : 1.1 * decade_m * std::max(decades(echo.total_e), decades(least_e));
 }
 
 std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direction,
@@ -237,7 +245,7 @@ std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direc
   weigh_footprint(scan, direction, ray);
   weigh_motion(scan, direction, index, ray);
   weigh_fog(scan, electrons, ray);
-  weigh_walk(s, electrons, ray);
+  weigh_walk(s, noise, ray);
   weigh_paths(scan, direction, index, electrons, ray);
   return ray;
 }
