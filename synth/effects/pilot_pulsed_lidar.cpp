@@ -39,12 +39,6 @@ struct PilotScan {
   std::vector<double> endless_e;  // what fog without a surface sends back
 };
 
-Scene without_clear_bodies(Scene scene) {
-  std::erase_if(scene.objects,
-                [&](const Object& object) { return is_clear(scene.materials[object.material]); });
-  return scene;
-}
-
 PilotScan prepare(const PulsedLidar& s, const RayCaster& caster, const RayCaster& solid,
                   const Pose& world_from_scanner) {
   PilotScan scan{.scanner = s,
@@ -255,7 +249,7 @@ std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direc
 std::vector<PilotRay> pilot(const PulsedLidar& scanner, const RayCaster& caster,
                             const Pose& world_from_scanner, int rays) {
   check(scanner);
-  const RayCaster solid(without_clear_bodies(caster.scene()));
+  const RayCaster solid(without_clear_objects(caster.scene()));
   const PilotScan scan = prepare(scanner, caster, solid, world_from_scanner);
   const std::vector<Eigen::Vector3d> directions = ray_directions(scanner);
   const RayGrid grid = ray_grid(scanner);

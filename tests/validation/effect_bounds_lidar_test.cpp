@@ -5,12 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "libscan/acquire/acquire.h"
-#include "synth/effects/weight.h"
 #include "tests/synth/lidar_waveforms.h"
+#include "tests/validation/effect_bounds.h"
 
 namespace scan::synth {
 namespace {
@@ -38,13 +37,6 @@ void PrintTo(const Case& c, std::ostream* out) {
   *out << c.name;
 }
 
-double bound_m(const PulsedLidar& lidar, const Scene& scene, Effect effect) {
-  const RayCaster caster(scene);
-  const Weighed weighed = weigh(lidar, scene, effect, pilot(lidar, caster, Pose::Identity(), 2000));
-  EXPECT_TRUE(weighed.weight) << weighed.why_absent;
-  return weighed.weight ? weighed.weight->bound_m : 0;
-}
-
 // Decoded ranges, ray by ray; NaN for a miss.
 std::vector<double> ranges_m(const PulsedLidar& lidar, const RayCaster& caster, std::uint64_t seed,
                              const EffectSet& effects) {
@@ -56,40 +48,12 @@ std::vector<double> ranges_m(const PulsedLidar& lidar, const RayCaster& caster, 
   return found;
 }
 
-// The largest error over the rays with what it is sure to be at least and at most: each ray's mean
-// over renderings -+ five standard errors.
-struct Measured {
-  double least_m = 0;
-  double most_m = 0;
-  int rays = 0;
-};
-
-Measured measure(const Case& c, const PulsedLidar& lidar, const Scene& scene) {
+LargestError measure(const Case& c, const PulsedLidar& lidar, const Scene& scene) {
   const EffectSet with = EffectSet(c.others).set(c.effect);
   const RayCaster on(simplified(scene, with)), off(simplified(scene, c.others));
-  std::vector<double> sum, squares;
-  for (int seed = 0; seed < c.renderings; ++seed) {
-    const auto a = ranges_m(lidar, on, seed, with);
-    const auto b = ranges_m(lidar, off, seed, c.others);
-    sum.resize(a.size(), 0);
-    squares.resize(a.size(), 0);
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      sum[i] += a[i] - b[i];
-      squares[i] += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-  }
-  Measured measured;
-  const double n = c.renderings;
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    if (std::isnan(sum[i])) continue;
-    const double mean = sum[i] / n;
-    const double error =
-        n > 1 ? std::sqrt(std::max(squares[i] / n - mean * mean, 0.0) / (n - 1)) : 0;
-    measured.least_m = std::max(measured.least_m, std::abs(mean) - 5 * error);
-    measured.most_m = std::max(measured.most_m, std::abs(mean) + 5 * error);
-    ++measured.rays;
-  }
-  return measured;
+  return largest_error(c.renderings, [&](std::uint64_t seed) {
+    return minus(ranges_m(lidar, on, seed, with), ranges_m(lidar, off, seed, c.others));
+  });
 }
 
 class LidarBound : public testing::TestWithParam<Case> {};
@@ -100,13 +64,7 @@ TEST_P(LidarBound, IsMetToATenth) {
   PulsedLidar lidar = device();
   Scene scene;
   c.build(lidar, scene);
-  const double bound = bound_m(lidar, scene, c.effect);
-  const Measured error = measure(c, lidar, scene);
-  std::printf("lidar bound: %-22s %9.4g mm, error %.4g to %.4g mm, ratio %.2f\n", c.name,
-              bound * 1e3, error.least_m * 1e3, error.most_m * 1e3, error.least_m / bound);
-  ASSERT_GT(error.rays, 10);
-  EXPECT_LE(error.most_m, bound + 1e-4);
-  EXPECT_GE(error.least_m, bound / 10 + 1e-4);
+  expect_met(c.name, measure(c, lidar, scene), bound_m(lidar, scene, c.effect), 1e-4);
 }
 
 void before_a_plate(PulsedLidar& lidar, Scene& scene, double behind_m) {
@@ -281,8 +239,8 @@ TEST_P(LidarNoiseBound, IsThreeSigma) {
   const double with = spread_m(lidar, scene, EffectSet(others).set(GetParam()));
   const double sigma_m = with - (is_light ? spread_m(lidar, scene, others) : 0);
   const double bound = bound_m(lidar, scene, GetParam());
-  std::printf("lidar bound: %-22s %9.4g mm, three sigma %.4g mm\n",
-              std::string(name(GetParam())).c_str(), bound * 1e3, 3e3 * sigma_m);
+  std::printf("bound: %-24s %9.4g mm, three sigma %.4g mm\n", std::string(name(GetParam())).c_str(),
+              bound * 1e3, 3e3 * sigma_m);
   EXPECT_NEAR(3 * sigma_m / bound, 1, 0.1);
 }
 
