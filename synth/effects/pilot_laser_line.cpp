@@ -38,13 +38,13 @@ std::vector<Place> places(const LaserLine& s, int rays) {
 // What a pilot shares among its rays.
 struct PilotScan {
   const LaserLine& scanner;
-  const RayCaster& caster;
-  // Without clear bodies, behind which there is something to measure, and translucent ones opaque:
-  // as the scanner sees it with those effects left out.
-  const RayCaster& solid;
+  const Scene& scene;  // as it is
+  const RayCaster&
+      opaque;              // translucent bodies are Lambert surfaces: what they do is a closed form
+  const RayCaster& solid;  // besides, without clear bodies, behind which there is something
   const LaserSheet sheet;
-  const LightTransport transport;
-  const bool has_smooth;  // a mirror or clear body, which may show a ghost anywhere
+  const LightTransport transport;  // in `opaque`
+  const bool has_smooth;           // a mirror or clear body, which may show a ghost anywhere
 };
 
 // The stripe's point as its tangent plane shows it.
@@ -143,10 +143,10 @@ std::optional<Seen> see(const LaserView& view, const SheetHit& lit) {
 void weigh_light(const PilotScan& scan, const LaserView& view, const SheetHit& lit,
                  std::uint64_t index, Seen& seen) {
   StripePoint& p = seen.point;
-  const Scene& scene = scan.caster.scene();
+  const Scene& scene = scan.scene;
   const Eigen::Vector3d in = (lit.x_in_camera - scan.sheet.origin).normalized();
   const double cosine = lit.hit.normal.dot(view.world_from_camera.linear() * in);
-  const Material& material = scene.materials[scan.solid.scene().objects[lit.hit.object].material];
+  const Material& material = scene.materials[view.caster.scene().objects[lit.hit.object].material];
   const Wander wander = wander_in(material, std::sqrt(std::max(0.0, 1 - cosine * cosine)));
   p.met_smooth = scan.has_smooth;
   p.wander_m = wander.mean_m;
@@ -157,20 +157,25 @@ void weigh_light(const PilotScan& scan, const LaserView& view, const SheetHit& l
   }
   const double window = window_px(stripe_sigma_px(p));
   look_around(view, lit, window, seen);
-  const LaserView whole_view{scan.scanner, scan.sheet, scan.caster, view.world_from_camera};
+  const LaserView whole_view{scan.scanner, scan.sheet, scan.opaque, view.world_from_camera};
   seen.light = stripe_light(whole_view, scan.transport, lit.pixel, window, index);
   p.uneven_e = seen.light.uneven_e;
   p.elsewhere_e = seen.light.elsewhere_e;
   p.other_e += seen.light.others_e;
 }
 
+// Where nothing is seen behind clear bodies, these themselves.
 std::optional<Seen> follow(const PilotScan& scan, const Pose& world_from_camera, double angle_rad,
                            std::uint64_t index) {
-  const LaserView view{scan.scanner, scan.sheet, scan.solid, world_from_camera};
-  const SheetHit lit = view.shine(angle_rad, 0);
-  std::optional<Seen> seen = see(view, lit);
-  if (seen) weigh_light(scan, view, lit, index, *seen);
-  return seen;
+  for (const RayCaster* caster : {&scan.solid, &scan.opaque}) {
+    const LaserView view{scan.scanner, scan.sheet, *caster, world_from_camera};
+    const SheetHit lit = view.shine(angle_rad, 0);
+    std::optional<Seen> seen = see(view, lit);
+    if (!seen) continue;
+    weigh_light(scan, view, lit, index, *seen);
+    return seen;
+  }
+  return std::nullopt;
 }
 
 PilotRay pilot_ray(const LaserLine& device, const Seen& seen) {
@@ -188,10 +193,10 @@ PilotRay pilot_ray(const LaserLine& device, const Seen& seen) {
   return ray;
 }
 
-bool has_smooth(const Scene& scene) {
-  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
-    return has_delta(scene.materials[object.material].bsdf);
-  });
+template <class Test>
+bool any_object(const Scene& scene, Test test) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [&](const Object& object) { return test(scene.materials[object.material]); });
 }
 
 }  // namespace
@@ -199,15 +204,21 @@ bool has_smooth(const Scene& scene) {
 std::vector<PilotRay> pilot(const LaserLine& scanner, const RayCaster& caster,
                             const Pose& world_from_scanner, int rays) {
   check(scanner);
-  const RayCaster solid(simplified(without_clear_objects(caster.scene()),
-                                   EffectSet::all().without(Effect::subsurface)));
+  const Scene& scene = caster.scene();
+  std::optional<RayCaster> opaque, solid;  // where they differ from the scene
+  if (any_object(scene, [](const Material& m) { return m.interior.has_value(); }))
+    opaque.emplace(simplified(scene, EffectSet::all().without(Effect::subsurface)));
+  if (any_object(scene, is_clear))
+    solid.emplace(without_clear_objects(opaque ? opaque->scene() : scene));
+  const RayCaster& lit = opaque ? *opaque : caster;
   const PilotScan scan{
       .scanner = scanner,
-      .caster = caster,
-      .solid = solid,
+      .scene = scene,
+      .opaque = lit,
+      .solid = solid ? *solid : lit,
       .sheet = laser_sheet(scanner),
-      .transport = LightTransport(caster, transport_options(EffectSet::all(), true)),
-      .has_smooth = has_smooth(caster.scene())};
+      .transport = LightTransport(lit, transport_options(EffectSet::all(), true)),
+      .has_smooth = any_object(scene, [](const Material& m) { return has_delta(m.bsdf); })};
   const std::vector<Pose> poses = scanner_from_camera(scanner);
   const std::vector<Place> all = places(scanner, rays);
   std::vector<std::optional<Seen>> seen(all.size());

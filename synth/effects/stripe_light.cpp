@@ -13,8 +13,8 @@ namespace scan::synth {
 namespace {
 
 using std::numbers::pi;
-constexpr int paths_per_place = 32;
-constexpr int places_in_row = 8, paths_in_row = 8;
+constexpr int paths_per_place = 16;
+constexpr int places_in_row = 8, paths_in_row = 4;
 
 // Receives one path.
 struct PilotSums {
