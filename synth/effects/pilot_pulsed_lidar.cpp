@@ -10,6 +10,7 @@
 #include "libscan/core/parallel.h"
 #include "libscan/core/units.h"
 #include "synth/effects/weight.h"
+#include "synth/medium/diffusion.h"
 #include "synth/scanners/first_surface.h"
 #include "synth/scanners/pulsed_lidar_fog.h"
 #include "synth/scanners/pulsed_lidar_noise.h"
@@ -31,7 +32,8 @@ double& left_out(PilotRay& ray, Effect effect) {
 struct PilotScan {
   const PulsedLidar& scanner;
   const RayCaster& caster;
-  const RayCaster& solid;  // without clear bodies, behind which there is something to measure
+  // Without clear bodies, behind which there is something to measure, and translucent ones opaque.
+  const RayCaster& solid;
   const Pose& world_from_scanner;
   BeamSection section;
   LightTransport transport;
@@ -59,8 +61,8 @@ PilotScan prepare(const PulsedLidar& s, const RayCaster& caster, const RayCaster
 }
 
 // The light of a few paths that does not come straight back. `late_e_m`: electrons times extra
-// one-way length of what comes within the window of the direct echo's fit; later light is another
-// echo.
+// one-way length of what comes over two or more surfaces within the window of the direct echo's
+// fit; later light is another echo.
 struct PilotLight {
   double range_m = 0, window_m = 0, known_m = 0;
   double indirect_e = 0, extra_e_m = 0, late_e_m = 0, lamps_e = 0;
@@ -70,7 +72,7 @@ struct PilotLight {
     const double extra_m = std::max(path_m / 2 - range_m, 0.0);
     indirect_e += electrons;
     extra_e_m += electrons * extra_m;
-    if (extra_m <= window_m) late_e_m += electrons * extra_m;
+    if (scatterings > 1 && extra_m <= window_m) late_e_m += electrons * extra_m;
   }
   void other_light(double electrons) { lamps_e += electrons; }
 };
@@ -112,9 +114,8 @@ void weigh_paths(const PilotScan& scan, const Eigen::Vector3d& direction, std::s
   if (indirect_e > 0) {
     ray.indirect_share = indirect_e / noise.total_e;
     ray.indirect_extra_m = at_most(streams, &PilotLight::extra_e_m) / indirect_e;
-    const double late_m = at_most(streams, &PilotLight::late_e_m) / (noise.total_e + indirect_e);
-    left_out(ray, Effect::interreflection) = late_m;
-    left_out(ray, Effect::subsurface) = late_m;
+    left_out(ray, Effect::interreflection) =
+        at_most(streams, &PilotLight::late_e_m) / (noise.total_e + indirect_e);
   }
   const double lamps_e = s.electrons_per_w_m2 * at_most(streams, &PilotLight::lamps_e);
   const double floor_e2 = floor_variance_e2(s);
@@ -215,6 +216,14 @@ void weigh_walk(const PulsedLidar& s, const EchoNoise& echo, PilotRay& ray) {
           : 1.1 * decade_m * std::max(decades(echo.total_e), decades(least_e));
 }
 
+// Light stays in a body for its mean path there; what comes after the window is another echo.
+void weigh_stay(const Material& material, const EchoNoise& echo, PilotRay& ray) {
+  const auto* boundary = std::get_if<Dielectric>(&material.bsdf);
+  if (!boundary || !material.interior) return;
+  const double path_m = penetration_path_m(*material.interior, std::max(boundary->index, 1.0));
+  left_out(ray, Effect::subsurface) = std::min(path_m / 2, echo.half_window_m());
+}
+
 std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direction,
                              std::size_t index) {
   const PulsedLidar& s = scan.scanner;
@@ -240,6 +249,8 @@ std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direc
   weigh_motion(scan, direction, index, ray);
   weigh_fog(scan, electrons, ray);
   weigh_walk(s, noise, ray);
+  const auto& object = scan.solid.scene().objects[seen->hit.object];
+  weigh_stay(scene.materials[object.material], noise, ray);
   weigh_paths(scan, direction, index, electrons, ray);
   return ray;
 }
@@ -249,7 +260,8 @@ std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direc
 std::vector<PilotRay> pilot(const PulsedLidar& scanner, const RayCaster& caster,
                             const Pose& world_from_scanner, int rays) {
   check(scanner);
-  const RayCaster solid(without_clear_objects(caster.scene()));
+  const RayCaster solid(simplified(without_clear_objects(caster.scene()),
+                                   EffectSet::all().without(Effect::subsurface)));
   const PilotScan scan = prepare(scanner, caster, solid, world_from_scanner);
   const std::vector<Eigen::Vector3d> directions = ray_directions(scanner);
   const RayGrid grid = ray_grid(scanner);
