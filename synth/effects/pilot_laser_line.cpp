@@ -95,7 +95,7 @@ void measure(const LaserView& view, const SheetHit& lit, Seen& seen) {
 void look_around(const LaserView& view, const SheetHit& lit, double reach_px, Seen& seen) {
   const Scene& scene = view.caster.scene();
   const auto colour = [&](const Hit& hit) {
-    return albedo(bsdf_at(scene, hit.object, hit.point), Eigen::Vector3d::UnitZ());
+    return albedo(bsdf_at(scene, hit.object, hit.triangle, hit.point), Eigen::Vector3d::UnitZ());
   };
   const double own = colour(lit.hit);
   for (const double column : {-reach_px, -0.5, 0.0, 0.5, reach_px})
@@ -123,7 +123,7 @@ std::optional<Seen> see(const LaserView& view, const SheetHit& lit) {
   seen.point.height_e = view.light(seen.ray).laser_e;
   seen.point.other_e = view.light(seen.ray).other_e;
   // a smooth surface shows nothing itself; what it spoils is weighed as if it were white
-  if (has_delta(bsdf_at(view.caster.scene(), lit.hit.object, lit.hit.point)))
+  if (has_delta(bsdf_at(view.caster.scene(), lit.hit.object, lit.hit.triangle, lit.hit.point)))
     seen.point.height_e = std::max(
         seen.point.height_e, sheet_light(view.scanner, view.sheet, lit.x_in_camera).irradiance_e);
   seen.point.range_m = lit.x_in_camera.norm();
