@@ -87,6 +87,29 @@ synth::DensityGrid read_density(JsonReader reader, const std::filesystem::path& 
   return grid;
 }
 
+// How far one sees, metres.
+double sight_m(JsonReader& reader, std::string_view name) {
+  const double range_m = reader.length_m(name);
+  if (!(range_m > 0)) reader.fail(std::string(name) + "_m", "must be positive");
+  return range_m;
+}
+
+synth::Medium read_fog(JsonReader reader) {
+  const double range_m = sight_m(reader, "optical_range");
+  const double cosine = reader.number("mean_cosine", 0.9);
+  const double albedo = reader.number("single_scattering_albedo", 1);
+  reader.finish();
+  return synth::fog(range_m, cosine, albedo);
+}
+
+synth::Medium read_haze(JsonReader reader, double wavelength_m) {
+  const double visibility_m = sight_m(reader, "visibility");
+  const double cosine = reader.number("mean_cosine", 0.7);
+  const double albedo = reader.number("single_scattering_albedo", 1);
+  reader.finish();
+  return synth::haze(visibility_m, wavelength_m, cosine, albedo);
+}
+
 }  // namespace
 
 RecipeLight read_light(JsonReader reader, const std::filesystem::path& folder) {
@@ -103,14 +126,13 @@ ordered_json to_json(const RecipeLight& light) {
   return std::visit(LightWriter{light.image}, light.light);
 }
 
-RecipeMedium read_medium(JsonReader reader, const std::filesystem::path& folder) {
+RecipeMedium read_medium(JsonReader reader, const std::filesystem::path& folder,
+                         double wavelength_m) {
   RecipeMedium read;
   if (reader.has("fog")) {
-    JsonReader inner = reader.object("fog");
-    const double range_m = inner.length_m("optical_range");
-    const double cosine = inner.number("mean_cosine", 0.9);
-    read.medium = synth::fog(range_m, cosine, inner.number("single_scattering_albedo", 1));
-    inner.finish();
+    read.medium = read_fog(reader.object("fog"));
+  } else if (reader.has("haze")) {
+    read.medium = read_haze(reader.object("haze"), wavelength_m);
   } else {
     FieldReader inner(reader);
     fields(inner, read.medium);

@@ -25,8 +25,11 @@ struct RecipeMedium {
   synth::Medium medium;
   std::filesystem::path density;
 };
-// Coefficients, or {"fog": {"optical_range_m": 100}}.
-RecipeMedium read_medium(JsonReader reader, const std::filesystem::path& folder);
+// Coefficients; or {"fog": {"optical_range_m": 100}} (5 % contrast, any wavelength); or
+// {"haze": {"visibility_m": 8000}} (2 % contrast at 550 nm), carried over to the device's
+// wavelength.
+RecipeMedium read_medium(JsonReader reader, const std::filesystem::path& folder,
+                         double wavelength_m);
 nlohmann::ordered_json to_json(const RecipeMedium& medium);
 
 }  // namespace scan

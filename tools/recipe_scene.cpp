@@ -128,7 +128,7 @@ RecipeScene read_scene(JsonReader reader, const std::filesystem::path& folder,
       scene.scene.lights.push_back(scene.lights.back().light);
     }
   if (reader.has("medium") && !reader.value("medium").is_null()) {
-    scene.medium = read_medium(reader.object("medium"), folder);
+    scene.medium = read_medium(reader.object("medium"), folder, wavelength_m);
     scene.scene.medium = scene.medium->medium;
   }
   reader.finish();

@@ -75,43 +75,76 @@ double motion_m(const LaserLine& device, const StripePoint& p) {
   return device.exposure_share * std::abs(device.turn_rad) * lever_m;
 }
 
-// What is above the full well fills as many pixels as it takes; the centre stays for a whole
-// stripe, one that is cut loses half of them on one side.
+// Charge that runs over keeps its sum and centre (laser_line_blooming.h); going down the drain it
+// leaves a stripe that is cut flat where it is u = sqrt(2 ln(height / full well)) sigma from its
+// centre. A whole one keeps its centre; of one that an edge cuts anywhere the flat part's centre
+// and the light's are at most 0.61 (u / 2) apart up to a hundredfold, by scanning all cuts.
 double blooming_px(const LaserLine& device, const StripePoint& p, double s) {
   if (device.blooming_share == 0 || p.height_e <= device.sensor.full_well_e) return 0;
-  return std::sqrt(2 * pi) * s * p.height_e / device.sensor.full_well_e / 2;
+  return s * std::sqrt(2 * std::log(p.height_e / device.sensor.full_well_e)) / 2;
 }
 
-// Light of others, a of the stripe's height in its middle. What is even in the decoder's window W =
-// 3 s (at least 2 px) pulls to neither side; if it grows from nothing at one end to 2 a at the
-// other, its moment is 2 a W^2 / 3, over the stripe's sqrt(2 pi) s. Never more than W.
+// Light that is even in the window W pulls to neither side. What differs by `share` of the stripe's
+// height pulls most if it fills one half evenly and the other not: its moment is share W^2 / 2,
+// over the stripe's sqrt(2 pi) s. Never more than W.
 double pull_px(double share, double s) {
-  const double window_px = std::max(3 * s, 2.0);
-  const double moment_px = 2.0 / 3 * share * window_px * window_px / (std::sqrt(2 * pi) * s);
-  return std::min(moment_px, window_px);
+  const double window = window_px(s);
+  return std::min(share * window * window / 2 / (std::sqrt(2 * pi) * s), window);
 }
 
-// Ghosts by mirrors and glass may be anywhere along the view.
+// A decoder takes a row's strongest peak: if light outside the window is brighter than half the
+// stripe (the other half for what a few paths leave uncertain), that may be anywhere in the row.
+double interreflection_m(const StripePoint& p, double s) {
+  if (p.elsewhere_e > p.height_e / 2) return p.rest_of_view_m;
+  return std::min(p.m_per_px * pull_px(p.uneven_e / p.height_e, s), p.rest_of_view_m);
+}
+
+// Ghosts by mirrors and glass may be anywhere in the row.
 double ghost_m(const StripePoint& p) {
-  return p.met_smooth ? p.range_m : 0;
+  return p.met_smooth ? p.rest_of_view_m : 0;
 }
 
-// Light wanders in a body over the mean free path of transport before it has forgotten its
-// direction, and the centre of what leaves by as much, seen at the triangulation angle; twice that
-// for the second to come.
-double subsurface_m(const LaserLine& device, const StripePoint& p) {
-  return std::min(2 * p.wander_m / std::tan(device.triangulation_rad), p.range_m);
+// Without a footprint a pixel shows its central ray alone. One that mixes two places of the stripe,
+// D apart, shows the brighter one instead of the other: D at most. An edge within it is off by half
+// a pixel. And a stripe that is sampled at points has its centre off by up to 4 pi s^2 exp(-2 pi^2
+// s^2), the first term of Poisson's sum for the moment.
+double footprint_px(const StripePoint& p) {
+  const double sharp = p.radius_m / 2 * p.px_per_m;
+  const double apart_px = std::min(p.step_m / p.m_per_px, window_px(stripe_sigma_px(p)));
+  const double sampled_px = 4 * pi * sharp * sharp * std::exp(-2 * pi * pi * sharp * sharp);
+  return std::max(apart_px, p.near_edge ? 0.5 : 0.0) + std::min(sampled_px, 0.5);
+}
+
+// Light that leaves a body elsewhere shifts the stripe's centre by its mean way along the surface;
+// and widens the stripe, which then errs otherwise at an edge. Both are seen at the size of the
+// view there at most.
+double subsurface_m(const LaserLine& device, const StripePoint& p, double s) {
+  const double px_per_m = std::max(device.camera.fx_px, device.camera.fy_px) / p.depth_m;
+  const double wider_px = std::hypot(s, p.spread_m / std::numbers::sqrt2 * px_per_m);
+  const double at_edge_px = p.near_edge ? width_change_px(s, wider_px) : 0;
+  return std::min(p.m_per_px * (p.wander_m * px_per_m + at_edge_px), p.rest_of_view_m);
 }
 
 // Fog takes light on both ways, which raises the noise, and shines where the sheet crosses the view
-// before the surface, within the window on one side.
+// in front of the surface: evenly on one side of the stripe, and half as much again for light that
+// is scattered more often. If that is as bright as the stripe, anything may be found.
 double medium_m(const StripePoint& p, double s) {
-  const double lost = std::exp(p.extinction_per_m * (p.range_m + p.from_laser_m) / 2) - 1;
-  const double veil = -std::expm1(-p.extinction_per_m * 6 * s * p.m_per_px);
-  return p.m_per_px * (3 * lost * shot_px(s, p.height_e) + pull_px(veil, s));
+  if (p.veil_e > p.height_e / 2) return p.rest_of_view_m;
+  const double lost = std::expm1(p.lost_in_fog / 2);
+  return p.m_per_px * (3 * lost * shot_px(s, p.height_e) + 1.5 * pull_px(p.veil_e / p.height_e, s));
+}
+
+// Noise, and at an edge what is lit on one side only.
+double other_light_px(const StripePoint& p, double s) {
+  const double noise_px = 3 * centroid_on_white * std::sqrt(p.other_e) * white_px(s, p.height_e);
+  return noise_px + (p.near_edge ? pull_px(p.other_e / p.height_e, s) : 0);
 }
 
 }  // namespace
+
+double window_px(double s) {
+  return std::max(3 * s, 2.0);
+}
 
 double stripe_sigma_px(const StripePoint& p) {
   const double s = p.radius_m / 2 * p.px_per_m;
@@ -151,18 +184,18 @@ double left_out_m(const LaserLine& device, const StripePoint& p, Effect effect) 
     case Effect::blooming:
       return p.m_per_px * blooming_px(device, p, s);
     case Effect::interreflection:
-      return p.m_per_px * pull_px(p.indirect_share, s);
+      return interreflection_m(p, s);
     case Effect::mirror_reflection:
     case Effect::refraction:
       return ghost_m(p);
     case Effect::subsurface:
-      return subsurface_m(device, p);
+      return subsurface_m(device, p, s);
     case Effect::medium:
       return medium_m(p, s);
     case Effect::scene_lights:
-      return p.m_per_px * 3 * centroid_on_white * std::sqrt(p.other_e) * white_px(s, height_e);
+      return p.m_per_px * other_light_px(p, s);
     case Effect::footprint:
-      return device.sub_rays > 1 ? p.footprint_m : 0;
+      return device.sub_rays > 1 ? p.m_per_px * footprint_px(p) : 0;
     case Effect::beam_spread:
       return p.m_per_px * spread_px(device, p);
     case Effect::plane_bow:

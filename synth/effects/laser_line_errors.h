@@ -18,12 +18,22 @@ struct StripePoint {
   double radius_m = 0;        // of the beam there, as the device has it
   double height_e = 0;        // peak of the stripe
   double other_e = 0;         // light of others there
-  double footprint_m = 0;     // largest minus smallest range within the pixel
-  double indirect_share = 0;  // of height_e
-  bool met_smooth = false;    // a mirror or clear body stands in the way of view or light
-  double wander_m = 0;        // mean free path of transport in the most translucent body
-  double extinction_per_m = 0;  // of the medium around
+  double rest_of_view_m = 0;  // largest change of range on the light plane within the image's row
+  // Of what the pixels around see, from the stripe's tangent plane: how far its range lies off, and
+  // whether anything there is another surface, of another colour or missing.
+  double step_m = 0;
+  bool near_edge = false;
+  double uneven_e = 0;      // the laser's light over two or more surfaces, differs in the window
+  double elsewhere_e = 0;   // the same, brightest of the row
+  bool met_smooth = false;  // the scene has a mirror or clear body
+  double wander_m = 0;      // along the surface, mean, of light that comes back out of a body
+  double spread_m = 0;      // and its root mean square distance
+  double veil_e = 0;        // what fog scatters into the view in front of the surface
+  double lost_in_fog = 0;   // optical depth of both ways
 };
+
+// On either side of its centre, what a decoder takes a stripe's place from.
+double window_px(double stripe_sigma_px);
 
 // 1 sigma of the stripe in its row, with the pixel's own box.
 double stripe_sigma_px(const StripePoint& point);

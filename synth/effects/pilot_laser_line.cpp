@@ -8,14 +8,13 @@
 
 #include "libscan/core/parallel.h"
 #include "synth/effects/laser_line_errors.h"
+#include "synth/effects/stripe_light.h"
 #include "synth/effects/weight.h"
-#include "synth/scanners/laser_line_paths.h"
 
 namespace scan::synth {
 namespace {
 
 constexpr int steps_of_pilot = 24;
-constexpr int paths_per_ray = 64;
 constexpr double widest_px = 30;  // a stripe that is wider has no point for a decoder
 
 struct Place {
@@ -36,12 +35,24 @@ std::vector<Place> places(const LaserLine& s, int rays) {
   return all;
 }
 
+// What a pilot shares among its rays.
+struct PilotScan {
+  const LaserLine& scanner;
+  const Scene& scene;  // as it is
+  const RayCaster&
+      opaque;              // translucent bodies are Lambert surfaces: what they do is a closed form
+  const RayCaster& solid;  // besides, without clear bodies, behind which there is something
+  const LaserSheet sheet;
+  const LightTransport transport;  // in `opaque`
+  const bool has_smooth;           // a mirror or clear body, which may show a ghost anywhere
+};
+
 // The stripe's point as its tangent plane shows it.
 struct Seen {
   StripePoint point;
   CameraRay ray;
   double incidence_rad = 0;
-  double indirect_extra_m = 0;
+  StripeLight light;
 };
 
 // Where the view of a pixel meets the tangent plane.
@@ -53,20 +64,52 @@ Eigen::Vector3d on_tangent(const LaserView& view, const SheetHit& lit,
   return normal.dot(lit.x_in_camera) / normal.dot(*ray) * *ray;
 }
 
+// On the calibrated plane, along the view; infinite beyond its horizon.
+double range_on_plane_m(const LaserView& view, const Eigen::Vector2d& pixel) {
+  const auto ray = ray_through(view.scanner.camera, pixel);
+  if (!ray) return 0;
+  const double depth_m = view.sheet.offset_m / view.sheet.normal.dot(*ray);
+  return depth_m > 0 ? depth_m * ray->norm() : std::numeric_limits<double>::infinity();
+}
+
 // By differences over half a pixel to each side.
 void measure(const LaserView& view, const SheetHit& lit, Seen& seen) {
-  const Eigen::Vector2d half(0.5, 0), half_row(0, 0.5);
+  const Eigen::Vector2d half(0.5, 0);
   const Eigen::Vector3d left = on_tangent(view, lit, lit.pixel - half);
   const Eigen::Vector3d right = on_tangent(view, lit, lit.pixel + half);
-  const Eigen::Vector3d up = on_tangent(view, lit, lit.pixel - half_row);
-  const Eigen::Vector3d down = on_tangent(view, lit, lit.pixel + half_row);
   seen.point.px_per_m = 1 / std::abs(view.sheet.normal.dot(right - left));
-  seen.point.footprint_m = std::abs(right.norm() - left.norm()) + std::abs(down.norm() - up.norm());
-  // on the calibrated plane, along the view
   const auto on_plane = [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
     return view.sheet.offset_m / view.sheet.normal.dot(x) * x;
   };
   seen.point.m_per_px = std::abs(seen.ray.direction.dot(on_plane(right) - on_plane(left)));
+  const LaserLine& s = view.scanner;
+  for (const double column : {0.0, s.camera.width_px - 1.0}) {
+    const double range_m =
+        std::clamp(range_on_plane_m(view, {column, lit.pixel.y()}), s.min_range_m, s.max_range_m);
+    seen.point.rest_of_view_m =
+        std::max(seen.point.rest_of_view_m, std::abs(range_m - seen.point.range_m));
+  }
+}
+
+// Where views of the window's pixels leave the tangent plane.
+void look_around(const LaserView& view, const SheetHit& lit, double reach_px, Seen& seen) {
+  const Scene& scene = view.caster.scene();
+  const auto colour = [&](const Hit& hit) {
+    return albedo(bsdf_at(scene, hit.object, hit.triangle, hit.point), Eigen::Vector3d::UnitZ());
+  };
+  const double own = colour(lit.hit);
+  for (const double column : {-reach_px, -0.5, 0.0, 0.5, reach_px})
+    for (const double row : {-0.5, 0.5}) {
+      const Eigen::Vector2d pixel = lit.pixel + Eigen::Vector2d(column, row);
+      const Eigen::Vector3d flat = on_tangent(view, lit, pixel);
+      if (!std::isfinite(flat.norm())) continue;
+      const auto met = view.caster.closest(view.world_from_camera.translation(),
+                                           view.world_from_camera.linear() * flat.normalized());
+      const double off_m = met ? std::abs(met->distance_m - flat.norm()) : seen.point.range_m;
+      seen.point.step_m = std::max(seen.point.step_m, off_m);
+      seen.point.near_edge |=
+          !met || met->object != lit.hit.object || std::abs(colour(*met) - own) > 0.01 * own;
+    }
 }
 
 std::optional<Seen> see(const LaserView& view, const SheetHit& lit) {
@@ -90,87 +133,49 @@ std::optional<Seen> see(const LaserView& view, const SheetHit& lit) {
   const Eigen::Vector3d out = -(view.world_from_camera.linear() * seen.ray.direction);
   seen.incidence_rad = std::acos(std::clamp(out.dot(lit.hit.normal), -1.0, 1.0));
   measure(view, lit, seen);
-  if (!(seen.point.height_e > 0) || !std::isfinite(seen.point.footprint_m) ||
+  if (!(seen.point.height_e > 0) || !std::isfinite(seen.point.rest_of_view_m) ||
       !(stripe_sigma_px(seen.point) < widest_px))
     return std::nullopt;
   return seen;
 }
 
-// Other light at the stripe, by a few paths, with three standard errors added.
-void trace_others(const LaserView& view, const LightTransport& transport, std::uint64_t index,
-                  Seen& seen) {
-  const SheetEmitter emitter(view);
-  SampleSequence random(1, 0, index, 0);
-  const Ray backwards{.origin = view.world_from_camera * seen.ray.origin,
-                      .direction = view.world_from_camera.linear() * seen.ray.direction};
-  const double way_m = straight_way_m(view, seen.ray);
-  double sum = 0, squares = 0, way_e = 0, other = 0;
-  for (int i = 0; i < paths_per_ray; ++i) {
-    PathSums sums{.direct_way_m = way_m};
-    random.start(static_cast<std::uint32_t>(i));
-    trace_path(transport, backwards, emitter, random, sums);
-    sum += sums.indirect_e;
-    squares += sums.indirect_e * sums.indirect_e;
-    way_e += sums.indirect_way_e;
-    other += sums.other_w_m2;
+// Bodies and fog, and the light of a few paths.
+void weigh_light(const PilotScan& scan, const LaserView& view, const SheetHit& lit,
+                 std::uint64_t index, Seen& seen) {
+  StripePoint& p = seen.point;
+  const Scene& scene = scan.scene;
+  const Eigen::Vector3d in = (lit.x_in_camera - scan.sheet.origin).normalized();
+  const double cosine = lit.hit.normal.dot(view.world_from_camera.linear() * in);
+  const Material& material = scene.materials[view.caster.scene().objects[lit.hit.object].material];
+  const Wander wander = wander_in(material, std::sqrt(std::max(0.0, 1 - cosine * cosine)));
+  p.met_smooth = scan.has_smooth;
+  p.wander_m = wander.mean_m;
+  p.spread_m = wander.spread_m;
+  if (scene.medium) {
+    p.veil_e = veil_e(view, *scene.medium, seen.ray, lit.x_in_camera);
+    p.lost_in_fog = extinction_per_m(*scene.medium) * (p.range_m + p.from_laser_m);
   }
-  const double n = paths_per_ray, mean = sum / n;
-  const double error = std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1));
-  seen.point.indirect_share = (mean + 3 * error) / seen.point.height_e;
-  seen.point.other_e += other / n * view.scanner.electrons_per_w_m2;
-  if (sum > 0) seen.indirect_extra_m = std::max(0.0, (way_e / sum - way_m) / 2);
+  const double window = window_px(stripe_sigma_px(p));
+  look_around(view, lit, window, seen);
+  const LaserView whole_view{scan.scanner, scan.sheet, scan.opaque, view.world_from_camera};
+  seen.light = stripe_light(whole_view, scan.transport, lit.pixel, window, index);
+  p.uneven_e = seen.light.uneven_e;
+  p.elsewhere_e = seen.light.elsewhere_e;
+  p.other_e += seen.light.others_e;
 }
 
-// What the scene has besides opaque rough surfaces.
-struct SceneTraits {
-  bool has_smooth = false;
-  double wander_m = 0;
-  double extinction_per_m = 0;
-};
-
-bool scatters(const Material& material) {
-  return material.interior && material.interior->scattering_per_m > 0;
-}
-
-SceneTraits traits_of(const Scene& scene) {
-  SceneTraits traits;
-  for (const Material& material : scene.materials) {
-    traits.has_smooth = traits.has_smooth || has_delta(material.bsdf);
-    if (!scatters(material)) continue;
-    const Medium& body = *material.interior;
-    const double reduced_per_m =
-        body.absorption_per_m + body.scattering_per_m * (1 - mean_cosine(body.phase));
-    traits.wander_m = std::max(traits.wander_m, 1 / reduced_per_m);
+// Where nothing is seen behind clear bodies, these themselves.
+std::optional<Seen> follow(const PilotScan& scan, const Pose& world_from_camera, double angle_rad,
+                           std::uint64_t index) {
+  for (const RayCaster* caster : {&scan.solid, &scan.opaque}) {
+    const LaserView view{scan.scanner, scan.sheet, *caster, world_from_camera};
+    const SheetHit lit = view.shine(angle_rad, 0);
+    std::optional<Seen> seen = see(view, lit);
+    if (!seen) continue;
+    weigh_light(scan, view, lit, index, *seen);
+    return seen;
   }
-  if (scene.medium)
-    traits.extinction_per_m = scene.medium->absorption_per_m + scene.medium->scattering_per_m;
-  return traits;
-}
-
-struct Outcome {
-  std::optional<Seen> seen;
-  bool met_smooth = false;
-};
-
-// Whether the laser's ray ends on something smooth, or its point is seen through something such.
-bool meets_smooth(const LaserView& view, const SheetHit& lit) {
-  if (!lit.is_hit) return false;
-  const Scene& scene = view.caster.scene();
-  if (has_delta(bsdf_at(scene, lit.hit.object, lit.hit.triangle, lit.hit.point))) return true;
-  const Eigen::Vector3d eye = view.world_from_camera.translation();
-  const auto first = view.caster.closest(eye, (lit.hit.point - eye).normalized());
-  return first && has_delta(bsdf_at(scene, first->object, first->triangle, first->point));
-}
-
-Outcome follow(const LaserView& view, const LightTransport& transport, const SceneTraits& traits,
-               double angle_rad, std::uint64_t index) {
-  const SheetHit lit = view.shine(angle_rad, 0);
-  Outcome outcome{see(view, lit), traits.has_smooth && meets_smooth(view, lit)};
-  if (!outcome.seen) return outcome;
-  outcome.seen->point.wander_m = traits.wander_m;
-  outcome.seen->point.extinction_per_m = traits.extinction_per_m;
-  trace_others(view, transport, index, *outcome.seen);
-  return outcome;
+  return std::nullopt;
 }
 
 PilotRay pilot_ray(const LaserLine& device, const Seen& seen) {
@@ -179,13 +184,19 @@ PilotRay pilot_ray(const LaserLine& device, const Seen& seen) {
                .sigma_m = noise_m(device, p),
                .signal_e = p.height_e,
                .incidence_rad = seen.incidence_rad,
-               .range_spread_m = p.footprint_m,
-               .indirect_share = p.indirect_share,
-               .indirect_extra_m = seen.indirect_extra_m,
+               .range_spread_m = p.step_m,
+               .indirect_share = seen.light.share_e / p.height_e,
+               .indirect_extra_m = seen.light.extra_m,
                .met_smooth = p.met_smooth};
   for (const Effect effect : all_effects())
     ray.left_out_m[static_cast<std::size_t>(effect)] = left_out_m(device, p, effect);
   return ray;
+}
+
+template <class Test>
+bool any_object(const Scene& scene, Test test) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [&](const Object& object) { return test(scene.materials[object.material]); });
 }
 
 }  // namespace
@@ -193,24 +204,30 @@ PilotRay pilot_ray(const LaserLine& device, const Seen& seen) {
 std::vector<PilotRay> pilot(const LaserLine& scanner, const RayCaster& caster,
                             const Pose& world_from_scanner, int rays) {
   check(scanner);
-  const LaserSheet sheet = laser_sheet(scanner);
+  const Scene& scene = caster.scene();
+  std::optional<RayCaster> opaque, solid;  // where they differ from the scene
+  if (any_object(scene, [](const Material& m) { return m.interior.has_value(); }))
+    opaque.emplace(simplified(scene, EffectSet::all().without(Effect::subsurface)));
+  if (any_object(scene, is_clear))
+    solid.emplace(without_clear_objects(opaque ? opaque->scene() : scene));
+  const RayCaster& lit = opaque ? *opaque : caster;
+  const PilotScan scan{
+      .scanner = scanner,
+      .scene = scene,
+      .opaque = lit,
+      .solid = solid ? *solid : lit,
+      .sheet = laser_sheet(scanner),
+      .transport = LightTransport(lit, transport_options(EffectSet::all(), true)),
+      .has_smooth = any_object(scene, [](const Material& m) { return has_delta(m.bsdf); })};
   const std::vector<Pose> poses = scanner_from_camera(scanner);
-  const LightTransport transport(caster, transport_options(EffectSet::all(), true));
-  const SceneTraits traits = traits_of(caster.scene());
   const std::vector<Place> all = places(scanner, rays);
-  std::vector<Outcome> outcomes(all.size());
+  std::vector<std::optional<Seen>> seen(all.size());
   parallel_for(all.size(), [&](std::size_t i) {
-    const LaserView view{scanner, sheet, caster, world_from_scanner * poses[all[i].step]};
-    outcomes[i] = follow(view, transport, traits, all[i].angle_rad, i);
+    seen[i] = follow(scan, world_from_scanner * poses[all[i].step], all[i].angle_rad, i);
   });
-  const bool met_smooth =
-      std::any_of(outcomes.begin(), outcomes.end(), [](const Outcome& o) { return o.met_smooth; });
   std::vector<PilotRay> found;
-  for (Outcome& outcome : outcomes) {
-    if (!outcome.seen) continue;
-    outcome.seen->point.met_smooth = met_smooth;
-    found.push_back(pilot_ray(scanner, *outcome.seen));
-  }
+  for (const auto& each : seen)
+    if (each) found.push_back(pilot_ray(scanner, *each));
   return found;
 }
 

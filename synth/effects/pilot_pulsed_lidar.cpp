@@ -10,6 +10,7 @@
 #include "libscan/core/parallel.h"
 #include "libscan/core/units.h"
 #include "synth/effects/weight.h"
+#include "synth/medium/diffusion.h"
 #include "synth/scanners/first_surface.h"
 #include "synth/scanners/pulsed_lidar_fog.h"
 #include "synth/scanners/pulsed_lidar_noise.h"
@@ -31,19 +32,14 @@ double& left_out(PilotRay& ray, Effect effect) {
 struct PilotScan {
   const PulsedLidar& scanner;
   const RayCaster& caster;
-  const RayCaster& solid;  // without clear bodies, behind which there is something to measure
+  // Without clear bodies, behind which there is something to measure, and translucent ones opaque.
+  const RayCaster& solid;
   const Pose& world_from_scanner;
   BeamSection section;
   LightTransport transport;
   std::optional<LidarFog> fog;
   std::vector<double> endless_e;  // what fog without a surface sends back
 };
-
-Scene without_clear_bodies(Scene scene) {
-  std::erase_if(scene.objects,
-                [&](const Object& object) { return is_clear(scene.materials[object.material]); });
-  return scene;
-}
 
 PilotScan prepare(const PulsedLidar& s, const RayCaster& caster, const RayCaster& solid,
                   const Pose& world_from_scanner) {
@@ -65,8 +61,8 @@ PilotScan prepare(const PulsedLidar& s, const RayCaster& caster, const RayCaster
 }
 
 // The light of a few paths that does not come straight back. `late_e_m`: electrons times extra
-// one-way length of what comes within the window of the direct echo's fit; later light is another
-// echo.
+// one-way length of what comes over two or more surfaces within the window of the direct echo's
+// fit; later light is another echo.
 struct PilotLight {
   double range_m = 0, window_m = 0, known_m = 0;
   double indirect_e = 0, extra_e_m = 0, late_e_m = 0, lamps_e = 0;
@@ -76,7 +72,7 @@ struct PilotLight {
     const double extra_m = std::max(path_m / 2 - range_m, 0.0);
     indirect_e += electrons;
     extra_e_m += electrons * extra_m;
-    if (extra_m <= window_m) late_e_m += electrons * extra_m;
+    if (scatterings > 1 && extra_m <= window_m) late_e_m += electrons * extra_m;
   }
   void other_light(double electrons) { lamps_e += electrons; }
 };
@@ -118,9 +114,8 @@ void weigh_paths(const PilotScan& scan, const Eigen::Vector3d& direction, std::s
   if (indirect_e > 0) {
     ray.indirect_share = indirect_e / noise.total_e;
     ray.indirect_extra_m = at_most(streams, &PilotLight::extra_e_m) / indirect_e;
-    const double late_m = at_most(streams, &PilotLight::late_e_m) / (noise.total_e + indirect_e);
-    left_out(ray, Effect::interreflection) = late_m;
-    left_out(ray, Effect::subsurface) = late_m;
+    left_out(ray, Effect::interreflection) =
+        at_most(streams, &PilotLight::late_e_m) / (noise.total_e + indirect_e);
   }
   const double lamps_e = s.electrons_per_w_m2 * at_most(streams, &PilotLight::lamps_e);
   const double floor_e2 = floor_variance_e2(s);
@@ -177,6 +172,11 @@ double fog_pull_m(const EchoNoise& echo, double floor_e2, double near_e) {
   return 1.5 * echo.m_per_sample * pull / information;
 }
 
+// Electrons that an echo needs to stand out: six sigma of the floor under its own width.
+double least_echo_e(const PulsedLidar& s, double width) {
+  return 6 * std::sqrt(width * std::sqrt(pi) * floor_variance_e2(s));
+}
+
 // Besides, what is lost of the echo makes its noise larger; and fog that stands above the
 // threshold, of which half is enough here, is an echo itself.
 void weigh_fog(const PilotScan& scan, double electrons, PilotRay& ray) {
@@ -196,21 +196,32 @@ void weigh_fog(const PilotScan& scan, double electrons, PilotRay& ray) {
   const double noise_m =
       sigmas * (dimmed.all_m(floor_e2 + near_e) - echo_noise(s, electrons).all_m(floor_e2));
   const double highest_e = *std::max_element(scan.endless_e.begin(), scan.endless_e.end());
-  const double threshold_e = 6 * std::sqrt(dimmed.width * std::sqrt(pi) * floor_e2);
-  const bool is_echo = highest_e * dimmed.width * std::sqrt(2 * pi) > threshold_e / 2;
+  const bool is_echo =
+      highest_e * dimmed.width * std::sqrt(2 * pi) > least_echo_e(s, dimmed.width) / 2;
   left_out(ray, Effect::medium) =
       is_echo ? ray.range_m : std::min(pull_m, dimmed.half_window_m()) + noise_m;
 }
 
-void weigh_walk(const PulsedLidar& s, double electrons, PilotRay& ray) {
+// What is calibrated is known but for the noise of log10(N); else a tenth for sampling and the fit.
+// Behind glass or in a mirror the echo may be as weak as any that is found.
+void weigh_walk(const PulsedLidar& s, const EchoNoise& echo, PilotRay& ray) {
   const double decade_m = half_c * std::abs(s.range_walk.per_decade_s);
-  const double total_e = std::max(electrons, 1.0);
-  // What is calibrated is known but for the noise of log10(N); else a tenth for sampling and the
-  // fit.
+  const double least_e = ray.met_smooth ? least_echo_e(s, echo.width) : echo.total_e;
+  const auto decades = [&](double electrons) {
+    return std::abs(std::log10(electrons / s.range_walk.at_electrons));
+  };
   left_out(ray, Effect::range_walk) =
       s.range_walk.is_calibrated
-          ? sigmas * decade_m / std::numbers::ln10 / std::sqrt(total_e)
-          : 1.1 * decade_m * std::abs(std::log10(total_e / s.range_walk.at_electrons));
+          ? sigmas * decade_m / std::numbers::ln10 / std::sqrt(std::min(least_e, echo.total_e))
+          : 1.1 * decade_m * std::max(decades(echo.total_e), decades(least_e));
+}
+
+// Light stays in a body for its mean path there; what comes after the window is another echo.
+void weigh_stay(const Material& material, const EchoNoise& echo, PilotRay& ray) {
+  const auto* boundary = std::get_if<Dielectric>(&material.bsdf);
+  if (!boundary || !material.interior) return;
+  const double path_m = penetration_path_m(*material.interior, std::max(boundary->index, 1.0));
+  left_out(ray, Effect::subsurface) = std::min(path_m / 2, echo.half_window_m());
 }
 
 std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direction,
@@ -237,7 +248,9 @@ std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direc
   weigh_footprint(scan, direction, ray);
   weigh_motion(scan, direction, index, ray);
   weigh_fog(scan, electrons, ray);
-  weigh_walk(s, electrons, ray);
+  weigh_walk(s, noise, ray);
+  const auto& object = scan.solid.scene().objects[seen->hit.object];
+  weigh_stay(scene.materials[object.material], noise, ray);
   weigh_paths(scan, direction, index, electrons, ray);
   return ray;
 }
@@ -247,7 +260,8 @@ std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direc
 std::vector<PilotRay> pilot(const PulsedLidar& scanner, const RayCaster& caster,
                             const Pose& world_from_scanner, int rays) {
   check(scanner);
-  const RayCaster solid(without_clear_bodies(caster.scene()));
+  const RayCaster solid(simplified(without_clear_objects(caster.scene()),
+                                   EffectSet::all().without(Effect::subsurface)));
   const PilotScan scan = prepare(scanner, caster, solid, world_from_scanner);
   const std::vector<Eigen::Vector3d> directions = ray_directions(scanner);
   const RayGrid grid = ray_grid(scanner);

@@ -47,6 +47,21 @@ std::string text(const char* format, Numbers... numbers) {
   return line;
 }
 
+// White noise of `variance_e2` as the decoder's fit passes it on: it weighs each sample by 1 / (v +
+// m), m the echo and v the floor's variance, as is best for both noises together. The centre is sum
+// w m' r / sum w m'^2 to first order in the residuals r.
+double white_by_fit_m(const EchoNoise& echo, double floor_e2, double variance_e2) {
+  const int window = static_cast<int>(echo.half_window_m() / echo.m_per_sample);
+  double passed = 0, information = 0;
+  for (int i = -window; i <= window; ++i) {
+    const double u = i / echo.width, model_e = echo.height_e * std::exp(-u * u / 2);
+    const double slope_e = model_e * u / echo.width, weight = 1 / (floor_e2 + model_e);
+    passed += weight * weight * slope_e * slope_e;
+    information += weight * slope_e * slope_e;
+  }
+  return echo.m_per_sample * std::sqrt(variance_e2 * passed) / information;
+}
+
 // Three sigma of what is random; rounding by half a step, in every sample the worst way.
 Weighed weigh_noise(const PulsedLidar& s, Effect effect, std::span<const PilotRay> rays) {
   const auto of = [&](const PilotRay& ray) {
@@ -58,9 +73,11 @@ Weighed weigh_noise(const PulsedLidar& s, Effect effect, std::span<const PilotRa
     });
   if (effect == Effect::read_noise) {
     if (s.sensor.read_noise_e == 0) return {std::nullopt, "the sensor adds no noise"};
-    return largest(
-        rays, text("the sensor adds %.3g electrons", s.sensor.read_noise_e),
-        [&](const PilotRay& ray) { return sigmas * of(ray).white_m(read_variance_e2(s)); });
+    return largest(rays, text("the sensor adds %.3g electrons", s.sensor.read_noise_e),
+                   [&](const PilotRay& ray) {
+                     return sigmas *
+                            white_by_fit_m(of(ray), floor_variance_e2(s), read_variance_e2(s));
+                   });
   }
   return largest(rays, text("a step is %.3g electrons", s.sensor.gain_e_per_dn),
                  [&](const PilotRay& ray) {
@@ -86,12 +103,13 @@ bool is_translucent(const Material& material) {
          material.interior->scattering_per_m > 0;
 }
 
-// Behind a mirror or glass any range may come out.
+// Behind a mirror or glass any range of the window may come out.
 Weighed weigh_smooth(const PulsedLidar& s, bool there, const char* kind,
                      std::span<const PilotRay> rays) {
   if (!there) return {std::nullopt, text("the scene has no %s", kind)};
-  return largest(rays, text("the scene has a %s", kind),
-                 [&](const PilotRay&) { return s.max_range_m; });
+  return largest(rays, text("the scene has a %s", kind), [&](const PilotRay& ray) {
+    return std::max(s.max_range_m - ray.range_m, ray.range_m - s.min_range_m);
+  });
 }
 
 Weighed weigh_light(const PulsedLidar& s, const Scene& scene, Effect effect,

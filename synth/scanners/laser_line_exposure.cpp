@@ -3,7 +3,9 @@
 #include "synth/scanners/laser_line_exposure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "libscan/core/parallel.h"
 
@@ -34,6 +36,17 @@ Image<double> dilated(const Image<double>& tiles) {
         for (int x = std::max(0, column - 1); x <= std::min(tiles.width - 1, column + 1); ++x)
           result(column, row) = std::max(result(column, row), tiles(x, y));
   return result;
+}
+
+// The largest of the tiles within half a tile of a pixel.
+double around(const Image<double>& tiles, int column, int row) {
+  constexpr int half = tile_px / 2;
+  double largest = 0;
+  for (const int y : {row - half, row + half})
+    for (const int x : {column - half, column + half})
+      largest = std::max(largest, tiles(std::clamp(x / tile_px, 0, tiles.width - 1),
+                                        std::clamp(y / tile_px, 0, tiles.height - 1)));
+  return largest;
 }
 
 }  // namespace
@@ -126,58 +139,81 @@ Image<std::uint8_t> LaserExposure::lit() const {
   return all;
 }
 
-// Mean of a path through each row and each column of the tile, and two standard errors more.
-double LaserExposure::tile_light_e(int left, int top) const {
+// Each round takes a path through each row and each column of the tile, and another pixel than the
+// rounds before.
+LaserExposure::TileLight LaserExposure::tile_light(int left, int top,
+                                                   std::span<const double> limits_e) const {
   const Camera& camera = sweep_.scanner.camera;
   const std::uint64_t place = static_cast<std::uint64_t>(step_) * camera.height_px + top;
   SampleSequence random(sweep_.address.seed, sweep_.address.scan,
                         tile_rays + place * camera.width_px + left, 0);
   double sum = 0, squares = 0;
-  for (int i = 0; i < tile_px; ++i) {
-    const int column = left + i, row = top + (3 * i + left / tile_px) % tile_px;
-    if (column >= camera.width_px || row >= camera.height_px) continue;
-    random.start(static_cast<std::uint32_t>(i));
-    const PixelLight light = path(column, row, i % sweep_.samples.size(), random);
-    sum += light.laser_e + light.other_e;
-    squares += (light.laser_e + light.other_e) * (light.laser_e + light.other_e);
+  TileLight light;
+  for (int round = 0; round < tile_px; ++round) {
+    for (int i = 0; i < tile_px; ++i) {
+      const int column = left + i, row = top + (3 * i + left / tile_px + round) % tile_px;
+      if (column >= camera.width_px || row >= camera.height_px) continue;
+      const int index = round * tile_px + i;
+      random.start(static_cast<std::uint32_t>(index));
+      const PixelLight pixel = path(column, row, index % sweep_.samples.size(), random);
+      sum += pixel.laser_e + pixel.other_e;
+      squares += (pixel.laser_e + pixel.other_e) * (pixel.laser_e + pixel.other_e);
+    }
+    light.paths += tile_px;
+    const auto n = static_cast<double>(light.paths);
+    const double mean = sum / n;
+    const double error = std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1));
+    light.most_e = mean + 2 * error;
+    if (std::none_of(limits_e.begin(), limits_e.end(),
+                     [&](double limit_e) { return std::abs(mean - limit_e) < 2 * error; }))
+      break;
   }
-  const double mean = sum / tile_px;
-  const double error = std::sqrt(std::max(0.0, squares / tile_px - mean * mean) / (tile_px - 1));
-  return mean + 2 * error;
+  return light;
+}
+
+// The stripe's top in each tile and those around it, 0 outside its window.
+Image<double> LaserExposure::tops(const Image<double>& direct_e) const {
+  Image<double> top_e = tiles_for(sweep_.scanner.camera);
+  for (int row = 0; row < direct_e.height; ++row)
+    for (int column = 0; column < direct_e.width; ++column) {
+      double& top = top_e(column / tile_px, row / tile_px);
+      top = std::max(top, direct_e(column, row));
+    }
+  return dilated(top_e);
 }
 
 Image<std::uint8_t> LaserExposure::brightened(const Image<std::uint8_t>& lit,
                                               const Image<double>& direct_e,
                                               PathTally& tally) const {
-  const Camera& camera = sweep_.scanner.camera;
-  Image<double> light_e = tiles_for(camera), top_e = light_e;
+  const Image<double> top_e = tops(direct_e);
+  const double dark_e = dark_noise_e(sweep_.scanner.sensor);
+  const auto worthwhile_e = [&](double top) {
+    return top > 0 ? worthwhile_in_stripe * std::sqrt(top + dark_e * dark_e)
+                   : worthwhile_in_dark * dark_e;
+  };
+  Image<double> light_e(top_e.width, top_e.height);
+  std::vector<std::uint64_t> paths(top_e.height, 0);
   parallel_for(
       static_cast<std::size_t>(light_e.height),
       [&](std::size_t y) {
         const int row = static_cast<int>(y);
-        for (int x = 0; x < light_e.width; ++x)
-          light_e(x, row) = tile_light_e(x * tile_px, row * tile_px);
+        for (int x = 0; x < light_e.width; ++x) {
+          const std::array limits_e = {worthwhile_e(0), worthwhile_e(top_e(x, row))};
+          const TileLight light = tile_light(x * tile_px, row * tile_px, limits_e);
+          light_e(x, row) = light.most_e;
+          paths[y] += light.paths;
+        }
       },
       4);
-  tally.paths += light_e.pixels.size() * tile_px;
-  for (int row = 0; row < camera.height_px; ++row)
-    for (int column = 0; column < camera.width_px; ++column) {
-      double& top = top_e(column / tile_px, row / tile_px);
-      top = std::max(top, direct_e(column, row));
-    }
-  light_e = dilated(light_e);
-  top_e = dilated(top_e);
-  const double dark_e = dark_noise_e(sweep_.scanner.sensor);
-  const bool everywhere = sweep_.paths->everywhere;
-  Image<std::uint8_t> pixels(camera.width_px, camera.height_px);
-  for (int row = 0; row < camera.height_px; ++row)
-    for (int column = 0; column < camera.width_px; ++column) {
-      const double found_e = light_e(column / tile_px, row / tile_px);
-      const double top_noise_e =
-          std::sqrt(top_e(column / tile_px, row / tile_px) + dark_e * dark_e);
+  tally.paths += std::accumulate(paths.begin(), paths.end(), std::uint64_t{0});
+  Image<std::uint8_t> pixels(lit.width, lit.height);
+  for (int row = 0; row < lit.height; ++row)
+    for (int column = 0; column < lit.width; ++column) {
+      const double found_e = around(light_e, column, row);
+      const double top = top_e(column / tile_px, row / tile_px);
       pixels(column, row) =
-          found_e > worthwhile_in_dark * dark_e ||
-          (lit(column, row) && (everywhere || found_e > worthwhile_in_stripe * top_noise_e));
+          found_e > worthwhile_e(0) ||
+          (lit(column, row) && (sweep_.paths->everywhere || found_e > worthwhile_e(top)));
     }
   return pixels;
 }

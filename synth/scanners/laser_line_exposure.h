@@ -4,6 +4,7 @@
 // it.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "synth/scanners/laser_line_paths.h"
@@ -51,7 +52,8 @@ class LaserExposure {
   Image<std::uint8_t> lit() const;
   // Pixels of which paths may change a range: in the stripe's own window, `lit`, where they bring
   // more than a tenth of the noise of its top, elsewhere where a ghost would stand out of the dark.
-  // A few paths through each tile of 8 x 8 pixels tell, of the tile and those around it.
+  // Paths through each tile of 8 x 8 pixels tell, of the tile and half a tile around it: eight, and
+  // more up to one through each pixel as long as they leave in doubt which it is.
   Image<std::uint8_t> brightened(const Image<std::uint8_t>& lit, const Image<double>& direct_e,
                                  PathTally& tally) const;
 
@@ -60,7 +62,12 @@ class LaserExposure {
   const LaserView& view_of(std::size_t sample) const {
     return views_[views_.size() > 1 ? sample : 0];
   }
-  double tile_light_e(int left, int top) const;
+  struct TileLight {
+    double most_e = 0;  // mean and two standard errors more
+    std::uint64_t paths = 0;
+  };
+  Image<double> tops(const Image<double>& direct_e) const;
+  TileLight tile_light(int left, int top, std::span<const double> limits_e) const;
 
   const LaserSweep& sweep_;
   const LaserView& middle_;  // of the exposure

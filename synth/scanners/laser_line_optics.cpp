@@ -137,10 +137,12 @@ SheetLight sheet_light(const LaserLine& scanner, const LaserSheet& sheet,
   const double across_m = sheet.normal.dot(x) - sheet.offset_m;
   const Eigen::Vector3d along = x - sheet.origin - across_m * sheet.normal;
   const double length_m = along.norm();
+  const double radius_m = sheet.radius_m(length_m), reach_m = sheet.reach_radii * radius_m;
+  // within the fan the plane is bent by no more than at its ends
+  if (std::abs(across_m) > reach_m + std::abs(sheet.bow_slope) * length_m) return {};
   const double angle_rad = std::atan2(along.y(), along.dot(sheet.middle));
   const double from_plane_m = across_m - sheet.slope_at(angle_rad) * length_m;
-  const double radius_m = sheet.radius_m(length_m);
-  if (std::abs(from_plane_m) > sheet.reach_radii * radius_m) return {};
+  if (std::abs(from_plane_m) > reach_m) return {};
   if (std::abs(angle_rad) > sheet.half_fan_rad) return {};
   // Irradiance of a sheet that spreads in one direction falls with 1/r, and with its thickness; at
   // the focus a target that faces the camera is met at the triangulation angle.

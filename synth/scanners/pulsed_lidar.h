@@ -13,10 +13,10 @@
 
 namespace scan::synth {
 
-// The detector's delay grows with the logarithm of an echo's energy N in electrons, as that of a
-// compressing amplifier (per_decade_s < 0: strong echoes come early): per_decade_s log10(max(N, 1)
-// / at_electrons). Echoes closer than 4 pulse sigmas are delayed as one; light over
-// other ways than straight back (pulsed_lidar_paths.h) is not delayed.
+// The detector's delay grows with the logarithm of a pulse's energy N in electrons, as that of a
+// compressing amplifier (per_decade_s < 0: strong pulses come early): per_decade_s log10(max(N, 1)
+// / at_electrons). Light that arrives within 4 pulse sigmas of other light, on whatever way, is
+// delayed with it as one pulse. What fog scatters back once is no pulse and not delayed.
 struct RangeWalk {
   double per_decade_s = 0;
   double at_electrons = 1000;  // where the delay is 0

@@ -145,21 +145,4 @@ void LidarBeam::echoes(const Pose& world_from_scanner, const Eigen::Vector3d& di
   sub_ray_echoes(world_from_scanner, direction, echoes);
 }
 
-void delay_echoes(const RangeWalk& walk, double pulse_sigma_s, std::vector<Echo>& echoes) {
-  std::sort(echoes.begin(), echoes.end(),
-            [](const Echo& a, const Echo& b) { return a.time_s < b.time_s; });
-  const double gap_s = 4 * pulse_sigma_s;
-  for (std::size_t first = 0, behind = 0; first < echoes.size(); first = behind) {
-    double electrons = 0, last_s = echoes[first].time_s;
-    for (behind = first; behind < echoes.size() && echoes[behind].time_s - last_s <= gap_s;
-         ++behind) {
-      electrons += echoes[behind].electrons;
-      last_s = echoes[behind].time_s;
-    }
-    const double late_s =
-        walk.per_decade_s * std::log10(std::max(electrons, 1.0) / walk.at_electrons);
-    for (std::size_t i = first; i < behind; ++i) echoes[i].time_s += late_s;
-  }
-}
-
 }  // namespace scan::synth

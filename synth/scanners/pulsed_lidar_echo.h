@@ -55,7 +55,4 @@ struct LidarBeam {
                                   const Eigen::Vector3d& direction) const;
 };
 
-// Delays the echoes by the range walk; sorts them by time.
-void delay_echoes(const RangeWalk& walk, double pulse_sigma_s, std::vector<Echo>& echoes);
-
 }  // namespace scan::synth

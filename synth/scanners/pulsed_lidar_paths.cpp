@@ -18,6 +18,8 @@ constexpr SamplingGoal goal{.most_samples = 512};
 constexpr double least_slope = 1e-5;      // of a beam without an extent
 constexpr double reference_range_m = 10;  // of electrons_at_10m
 constexpr double same_length = 1e-9;      // relative, of the straight way computed twice
+constexpr double sharp = 1e-3;            // of a sampling interval: within one sample
+constexpr double least_electrons = 0.01;  // less is no part of a pulse
 
 // Puts arrivals of one view at their times.
 struct Arrivals {
@@ -27,10 +29,12 @@ struct Arrivals {
   double lamp_e;   // electrons per sample and 1 W / m^2
   std::span<double> samples;
   double& lamps;
+  std::span<const DelayedPulse> walk;
 
   void device_light(double electrons, double path_m, int scatterings) {
     if (scatterings == 1 && path_m <= known_m) return;
-    add_echo(axis, {path_m / speed_of_light_m_s, electrons, pulse_sigma_s}, samples);
+    const double time_s = path_m / speed_of_light_m_s;
+    add_echo(axis, {time_s + delay_s(walk, time_s), electrons, pulse_sigma_s}, samples);
   }
   void other_light(double electrons) { lamps += lamp_e * electrons; }
 };
@@ -131,30 +135,41 @@ bool LidarPaths::needed(const PulsedLidar& scanner, const Scene& scene, const Ef
          has_uneven_medium(scene, effects);
 }
 
-LidarPaths::Quality LidarPaths::add(const Pose& world_from_scanner,
-                                    const Eigen::Vector3d& direction, const RenderAddress& address,
-                                    std::size_t ray, std::span<double> samples,
-                                    Memory& memory) const {
-  const BeamLight light = beam_light(scanner_, transport_.caster(), world_from_scanner, direction);
-  std::array<SampleSequence, 4> sequences = {SampleSequence(address.seed, address.scan, ray, 0),
-                                             SampleSequence(address.seed, address.scan, ray, 1),
-                                             SampleSequence(address.seed, address.scan, ray, 2),
-                                             SampleSequence(address.seed, address.scan, ray, 3)};
-  const auto noise_e = [&](double mean_e) { return std::sqrt(floor_e2_ + std::max(mean_e, 0.0)); };
+double LidarPaths::noise_e(double mean_e) const {
+  return std::sqrt(floor_e2_ + std::max(mean_e, 0.0));
+}
+
+void LidarPaths::trace(const Beam& beam, double sigma_s, std::span<const DelayedPulse> walk,
+                       Memory& memory) const {
+  const BeamLight light =
+      beam_light(scanner_, transport_.caster(), beam.world_from_scanner, beam.direction);
+  const auto sequence = [&](std::uint32_t stream) {
+    return SampleSequence(beam.address.seed, beam.address.scan, beam.ray, stream);
+  };
+  std::array<SampleSequence, 4> sequences = {sequence(0), sequence(1), sequence(2), sequence(3)};
+  const auto samples = static_cast<std::size_t>(axis_.samples);
   const auto draw = [&](int stream, int index, std::span<double> signals) {
     SampleSequence& random = sequences[stream];
     random.start(index);
     const Ray view{.origin = light.origin, .direction = light.view(random.next_2d())};
     Arrivals arrivals{.axis = axis_,
-                      .pulse_sigma_s = scanner_.pulse_sigma_s,
+                      .pulse_sigma_s = sigma_s,
                       .known_m = straight_is_known_ ? straight_way_m(transport_.caster(), view) : 0,
                       .lamp_e = scanner_.electrons_per_w_m2,
-                      .samples = signals.first(samples.size()),
-                      .lamps = signals.back()};
+                      .samples = signals.first(samples),
+                      .lamps = signals.back(),
+                      .walk = walk};
     trace_path(transport_, view, light, random, arrivals);
   };
-  Estimate& estimated = memory.estimate;
-  estimate(samples.size() + 1, goal, noise_e, draw, memory.sums, estimated);
+  estimate(
+      samples + 1, goal, [this](double mean_e) { return noise_e(mean_e); }, draw, memory.sums,
+      memory.estimate);
+}
+
+LidarPaths::Quality LidarPaths::add(const Beam& beam, std::span<const DelayedPulse> walk,
+                                    std::span<double> samples, Memory& memory) const {
+  trace(beam, scanner_.pulse_sigma_s, walk, memory);
+  const Estimate& estimated = memory.estimate;
   Quality quality{.paths = static_cast<double>(estimated.samples)};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double mean_e = estimated.mean[i] + estimated.mean.back();
@@ -167,6 +182,14 @@ LidarPaths::Quality LidarPaths::add(const Pose& world_from_scanner,
     quality.largest = std::max(quality.largest, share);
   }
   return quality;
+}
+
+void LidarPaths::find(const Beam& beam, std::vector<Echo>& arrivals, Memory& memory) const {
+  trace(beam, sharp * axis_.interval_s, {}, memory);
+  for (std::size_t i = 0; i + 1 < memory.estimate.mean.size(); ++i)
+    if (memory.estimate.mean[i] >= least_electrons)
+      arrivals.push_back({.time_s = axis_.start_s + static_cast<double>(i) * axis_.interval_s,
+                          .electrons = memory.estimate.mean[i]});
 }
 
 }  // namespace scan::synth

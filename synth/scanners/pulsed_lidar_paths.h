@@ -7,7 +7,7 @@
 #include <span>
 
 #include "synth/effects/effect.h"
-#include "synth/scanners/pulsed_lidar_echo.h"
+#include "synth/scanners/pulsed_lidar_walk.h"
 #include "synth/transport/estimate.h"
 #include "synth/transport/light_transport.h"
 
@@ -59,11 +59,22 @@ class LidarPaths {
   LidarPaths(const PulsedLidar& scanner, const RayCaster& caster, const EffectSet& effects,
              const SampleAxis& axis);
 
+  // What one beam is traced by.
+  struct Beam {
+    const Pose& world_from_scanner;
+    const Eigen::Vector3d& direction;
+    const RenderAddress& address;
+    std::size_t ray;
+  };
+
   // Adds to the samples what arrives other than straight, once scattered; that is known in closed
   // form (see straight_is_known). As many paths as the readings' own noise makes worth while.
-  Quality add(const Pose& world_from_scanner, const Eigen::Vector3d& direction,
-              const RenderAddress& address, std::size_t ray, std::span<double> samples,
+  Quality add(const Beam& beam, std::span<const DelayedPulse> walk, std::span<double> samples,
               Memory& memory) const;
+
+  // The same light before any delay, as sharp arrivals at the samples' middles; without what is
+  // less than a hundredth of an electron.
+  void find(const Beam& beam, std::vector<Echo>& arrivals, Memory& memory) const;
 
   // False in fog of uneven density, where the straight way is traced as well.
   bool straight_is_known() const { return straight_is_known_; }
@@ -72,6 +83,11 @@ class LidarPaths {
   static bool needed(const PulsedLidar& scanner, const Scene& scene, const EffectSet& effects);
 
  private:
+  // Into memory.estimate; each arrival as a Gaussian of that sigma.
+  void trace(const Beam& beam, double sigma_s, std::span<const DelayedPulse> walk,
+             Memory& memory) const;
+  double noise_e(double mean_e) const;
+
   const PulsedLidar& scanner_;
   SampleAxis axis_;
   LightTransport transport_;

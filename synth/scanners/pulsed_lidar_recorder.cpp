@@ -60,12 +60,25 @@ std::span<const std::uint16_t> LidarRecorder::read(const Pose& world_from_scanne
 
 SampleRange LidarRecorder::light(const Pose& world_from_scanner, const Eigen::Vector3d& direction,
                                  std::size_t ray) {
+  const PulsedLidar& s = scan_.beam.scanner;
+  const LidarPaths::Beam beam{world_from_scanner, direction, scan_.address, ray};
   SampleRange lit{signal_e_.size(), 0};
+  echoes_.clear();
+  walk_.clear();
   if (!scan_.paths || scan_.paths->straight_is_known())
     lit = straight_light(world_from_scanner, direction);
+  if (s.range_walk.per_decade_s != 0) {
+    arrivals_ = echoes_;
+    if (scan_.paths) scan_.paths->find(beam, arrivals_, memory_);
+    walk_ = delayed_pulses(s.range_walk, s.pulse_sigma_s, arrivals_);
+  }
+  for (Echo& echo : echoes_) {
+    echo.time_s += delay_s(walk_, echo.time_s);
+    const SampleRange touched = add_echo(scan_.axis, echo, signal_e_);
+    lit = {std::min(lit.first, touched.first), std::max(lit.behind, touched.behind)};
+  }
   if (scan_.paths) {
-    quality_ +=
-        scan_.paths->add(world_from_scanner, direction, scan_.address, ray, signal_e_, memory_);
+    quality_ += scan_.paths->add(beam, walk_, signal_e_, memory_);
     lit = {0, signal_e_.size()};
   }
   return {std::min(lit.first, lit.behind), lit.behind};
@@ -73,22 +86,12 @@ SampleRange LidarRecorder::light(const Pose& world_from_scanner, const Eigen::Ve
 
 SampleRange LidarRecorder::straight_light(const Pose& world_from_scanner,
                                           const Eigen::Vector3d& direction) {
-  const PulsedLidar& s = scan_.beam.scanner;
-  echoes_.clear();
   scan_.beam.echoes(world_from_scanner, direction, echoes_);
-  SampleRange lit{signal_e_.size(), 0};
-  if (scan_.fog) {
-    const auto end = first_surface(scan_.beam.caster, world_from_scanner, {.direction = direction});
-    const double far_m = end ? end->point.norm() : std::numeric_limits<double>::infinity();
-    lit = scan_.fog->add(far_m, signal_e_);
-    scan_.fog->dim(echoes_);
-  }
-  if (s.range_walk.per_decade_s != 0) delay_echoes(s.range_walk, s.pulse_sigma_s, echoes_);
-  for (const Echo& echo : echoes_) {
-    const SampleRange touched = add_echo(scan_.axis, echo, signal_e_);
-    lit = {std::min(lit.first, touched.first), std::max(lit.behind, touched.behind)};
-  }
-  return lit;
+  if (!scan_.fog) return {signal_e_.size(), 0};
+  const auto end = first_surface(scan_.beam.caster, world_from_scanner, {.direction = direction});
+  const double far_m = end ? end->point.norm() : std::numeric_limits<double>::infinity();
+  scan_.fog->dim(echoes_);
+  return scan_.fog->add(far_m, signal_e_);
 }
 
 }  // namespace scan::synth

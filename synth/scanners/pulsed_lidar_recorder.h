@@ -38,15 +38,17 @@ class LidarRecorder {
   const LidarPaths::Quality& quality() const { return quality_; }  // over all rays so far
 
  private:
-  // Each fills signal_e_ and returns the range of samples with light.
+  // Fills signal_e_ and returns the range of samples with light.
   SampleRange light(const Pose& world_from_scanner, const Eigen::Vector3d& direction,
                     std::size_t ray);
+  // Fills echoes_ and adds the fog's light.
   SampleRange straight_light(const Pose& world_from_scanner, const Eigen::Vector3d& direction);
 
   const LidarScan& scan_;
   std::vector<double> signal_e_;  // above the ambient light; all zero between rays
   std::vector<std::uint16_t> readings_;
-  std::vector<Echo> echoes_;
+  std::vector<Echo> echoes_, arrivals_;
+  std::vector<DelayedPulse> walk_;
   LidarPaths::Memory memory_;
   LidarPaths::Quality quality_;
 };

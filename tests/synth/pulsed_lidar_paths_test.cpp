@@ -32,7 +32,9 @@ std::vector<double> path_waveform(const PulsedLidar& lidar, const Scene& scene,
   const LidarPaths paths(lidar, caster, effects, axis);
   std::vector<double> samples(static_cast<std::size_t>(axis.samples));
   LidarPaths::Memory memory;
-  paths.add(Pose::Identity(), Eigen::Vector3d::UnitZ(), {}, 0, samples, memory);
+  const Pose pose = Pose::Identity();
+  const Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ();
+  paths.add({pose, ahead, {}, 0}, {}, samples, memory);
   return samples;
 }
 

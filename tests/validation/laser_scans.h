@@ -18,8 +18,10 @@ struct DecodedRays {
   std::vector<double> range_m;
 };
 
-inline DecodedRays decoded(const LaserLine& s, const Scene& scene, const EffectSet& effects) {
-  const Rendering rendering = render(s, RayCaster(scene), Pose::Identity(), {.seed = 3}, effects);
+inline DecodedRays decoded(const LaserLine& s, const Scene& scene, const EffectSet& effects,
+                           std::uint64_t seed = 3) {
+  const RayCaster caster(simplified(scene, effects));
+  const Rendering rendering = render(s, caster, Pose::Identity(), {.seed = seed}, effects);
   const auto& frames = std::get<StripeImages>(rendering.frames);
   const Scan scan = acquire_laser_line(frames, {.max_shape_error = 1e9});
   const auto rays = static_cast<std::size_t>(s.steps) * s.camera.height_px;
@@ -46,8 +48,9 @@ inline double centroid_px(const Image<std::uint16_t>& image, int row) {
 
 // Range of each ray by the centroid of its whole row.
 inline std::vector<double> centroid_ranges(const LaserLine& s, const Scene& scene,
-                                           const EffectSet& effects) {
-  const Rendering rendering = render(s, RayCaster(scene), Pose::Identity(), {}, effects);
+                                           const EffectSet& effects, std::uint64_t seed = 1) {
+  const RayCaster caster(simplified(scene, effects));
+  const Rendering rendering = render(s, caster, Pose::Identity(), {.seed = seed}, effects);
   const auto& frames = std::get<StripeImages>(rendering.frames);
   std::vector<double> ranges;
   for (const auto& image : frames.images)
