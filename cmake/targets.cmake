@@ -17,6 +17,13 @@ function(scan_add_library name)
   target_compile_options(scan_${name} PRIVATE ${LIBSCAN_WARNINGS})
 endfunction()
 
+# scan_kernel_source(files...): loops for vector instructions (libscan/core/instruction_sets.h). Each
+# product is rounded by itself, which keeps the bytes independent of the instruction set.
+function(scan_kernel_source)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
+                              "-ffp-contract=off;-fno-math-errno;-fno-trapping-math")
+endfunction()
+
 # scan_add_test(NAME SOURCES... LIBS targets...): one GoogleTest program, each of its tests in ctest.
 function(scan_add_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS" ${ARGN})

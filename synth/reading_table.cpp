@@ -79,9 +79,10 @@ ReadingTable::ReadingTable(const Sensor& sensor, const DetectorEffects& effects,
 void ReadingTable::tabulate(const std::vector<double>& cumulative) {
   for (const double share : cumulative)
     limits_.push_back(static_cast<std::uint64_t>(std::min(share, 1.0) * 0x1p48));
+  unsure_ = static_cast<std::uint16_t>(first_dn_ + static_cast<int>(limits_.size()));
   for (std::uint64_t i = 0; i < quick_.size(); ++i) {
     const std::uint16_t lowest = reading_at(i << 36), highest = reading_at(((i + 1) << 36) - 1);
-    quick_[i] = lowest == highest ? lowest : -1;
+    quick_[i] = lowest == highest ? lowest : unsure_;
   }
 }
 
@@ -90,29 +91,25 @@ std::uint16_t ReadingTable::reading_at(std::uint64_t u) const {
   return static_cast<std::uint16_t>(first_dn_ + (above - limits_.begin()));
 }
 
-std::uint16_t ReadingTable::reading_of(std::uint32_t half_word, RandomStream& random) const {
-  const std::int32_t quick = quick_[half_word >> 4];
-  if (quick >= 0) return static_cast<std::uint16_t>(quick);
-  return reading_at(std::uint64_t{half_word} << 32 | random.bits32());
-}
-
 std::uint16_t ReadingTable::draw(RandomStream& random) const {
   if (limits_.empty()) return read_pixel(sensor_, effects_, expected_e_, random);
   return limits_.size() == 1 ? static_cast<std::uint16_t>(first_dn_)
                              : reading_of(random.bits32() >> 16, random);
 }
 
-void ReadingTable::draw(RandomStream& random, std::span<std::uint16_t> readings) const {
+void ReadingTable::draw(std::span<const std::uint32_t> words, RandomStream& more,
+                        std::span<std::uint16_t> readings) const {
   if (limits_.empty()) {
-    for (std::uint16_t& dn : readings) dn = draw(random);
+    for (std::uint16_t& dn : readings) dn = draw(more);
   } else if (limits_.size() == 1) {
     std::fill(readings.begin(), readings.end(), static_cast<std::uint16_t>(first_dn_));
   } else {
-    for (std::size_t i = 0; i < readings.size(); i += 2) {
-      const std::uint32_t word = random.bits32();
-      readings[i] = reading_of(word >> 16, random);
-      if (i + 1 < readings.size()) readings[i + 1] = reading_of(word & 0xFFFF, random);
+    const std::size_t pairs = readings.size() / 2;
+    for (std::size_t i = 0; i < pairs; ++i) {
+      readings[2 * i] = reading_of(words[i] >> 16, more);
+      readings[2 * i + 1] = reading_of(words[i] & 0xFFFF, more);
     }
+    if (readings.size() % 2 != 0) readings.back() = reading_of(words[pairs] >> 16, more);
   }
 }
 

@@ -81,9 +81,10 @@ std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> c,
   return c;
 }
 
-RandomStream::RandomStream(std::uint64_t seed, std::uint32_t scan, std::uint64_t ray)
+RandomStream::RandomStream(std::uint64_t seed, std::uint32_t scan, std::uint64_t ray,
+                           std::uint32_t block)
     : key_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)},
-      counter_{0, scan, static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32)},
+      counter_{block, scan, static_cast<std::uint32_t>(ray), static_cast<std::uint32_t>(ray >> 32)},
       block_{} {}
 
 std::uint32_t RandomStream::bits32() {

@@ -15,8 +15,8 @@ namespace scan {
 class RandomStream {
  public:
   // `scan` and `ray` may be any numbers that name the item of work; streams of different addresses
-  // are independent.
-  RandomStream(std::uint64_t seed, std::uint32_t scan, std::uint64_t ray);
+  // are independent. `block`: where in the stream to begin, in blocks of four words.
+  RandomStream(std::uint64_t seed, std::uint32_t scan, std::uint64_t ray, std::uint32_t block = 0);
 
   std::uint32_t bits32();
   double uniform();                    // in [0, 1), 53 bits

@@ -34,21 +34,27 @@ CentralLight central_light(const DirectLight& light, const RayCaster& caster,
                            const Pose& world_from_scanner, const Rows& rows) {
   const PhaseCamera& s = light.scanner;
   const int width = s.camera.width_px + 2 * rim_px;
-  const std::size_t pixels = static_cast<std::size_t>(width) * (rows.end - rows.begin + 2 * rim_px);
+  const int height = rows.end - rows.begin + 2 * rim_px;
+  const std::size_t pixels = static_cast<std::size_t>(width) * height;
   CentralLight central{width, LightImage(pixels, light.tones.size()), std::vector<char>(pixels)};
+  const bool pinhole = is_pinhole(s);
   parallel_chunks(pixels, ViewBatch::most, [&](std::size_t begin, std::size_t end) {
     ViewBatch batch;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto [column, row] = place_of(i, width);
-      const auto view =
-          lens_ray(s, Eigen::Vector2d(column - rim_px, rows.begin + row - rim_px), {0, 0});
-      if (view) batch.add(world_from_scanner, *view, i);
+    TileWalk walk(begin, width, height);
+    for (std::size_t i = begin; i < end; ++i, walk.next()) {
+      const auto [column, row] = walk.place();
+      const Eigen::Vector2d place(column - rim_px, rows.begin + row - rim_px);
+      const std::size_t owner = index_of(walk.place(), width);
+      if (pinhole)
+        batch.add(place, owner);
+      else if (const auto view = lens_ray(s, place, {0, 0}))
+        batch.add(world_from_scanner, *view, owner);
     }
+    if (pinhole) batch.aim(s, world_from_scanner);
     batch.trace(s, caster, world_from_scanner);
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      light.add(batch, i, central.light.at(batch.owner(i)));
+    light.add(batch, [&](std::size_t owner) { return central.light.at(owner); });
+    for (std::size_t i = 0; i < batch.size(); ++i)
       central.textured[batch.owner(i)] = batch.hit(i) && is_textured(light.scene, *batch.hit(i));
-    }
   });
   return central;
 }
@@ -104,24 +110,33 @@ bool is_even(const PhaseCamera& s, const CentralLight& central, std::size_t pixe
   return true;
 }
 
-// All sub-rays of those pixels among [begin, end) that are wanted, counted from the first row.
+// All sub-rays of those pixels among [begin, end), counted in tiles from the first row, that are
+// wanted.
 template <class Wanted>
 void add_sub_rays(const DirectLight& light, const RayCaster& caster, const Pose& world_from_scanner,
-                  int first_row, std::size_t begin, std::size_t end, Wanted&& wanted,
+                  const Rows& rows, std::size_t begin, std::size_t end, Wanted&& wanted,
                   LightImage& image) {
   const PhaseCamera& s = light.scanner;
+  const bool pinhole = is_pinhole(s);
   ViewBatch batch;
   const auto flush = [&] {
+    if (pinhole) batch.aim(s, world_from_scanner);
     batch.trace(s, caster, world_from_scanner);
-    for (std::size_t i = 0; i < batch.size(); ++i) light.add(batch, i, image.at(batch.owner(i)));
+    light.add(batch, [&](std::size_t owner) { return image.at(owner); });
     batch.clear();
   };
-  for (std::size_t pixel = begin; pixel < end; ++pixel) {
+  TileWalk walk(begin, s.camera.width_px, rows.end - rows.begin);
+  for (std::size_t i = begin; i < end; ++i, walk.next()) {
+    PixelPlace place = walk.place();
+    const std::size_t pixel = index_of(place, s.camera.width_px);
     if (!wanted(pixel)) continue;
-    PixelPlace place = place_of(pixel, s.camera.width_px);
-    place.row += first_row;
-    for (int i = 0; i < s.sub_rays * s.sub_rays; ++i) {
-      if (const auto view = sub_ray(s, place, i)) batch.add(world_from_scanner, *view, pixel);
+    place.row += rows.begin;
+    for (int ray = 0; ray < s.sub_rays * s.sub_rays; ++ray) {
+      const Eigen::Vector2d seen(place.column, place.row);
+      if (pinhole)
+        batch.add(s.sub_rays == 1 ? seen : sub_pixel(place, ray, s.sub_rays), pixel);
+      else if (const auto view = sub_ray(s, place, ray))
+        batch.add(world_from_scanner, *view, pixel);
       if (batch.full()) flush();
     }
   }
@@ -172,7 +187,7 @@ LightImage direct_light(const PhaseCamera& s, std::span<const Tone> tones, const
   const DirectLight sub_light{s, caster.scene(), tones, light.scanner_from_world,
                               1.0 / (s.sub_rays * s.sub_rays)};
   const auto add = [&](std::size_t begin, std::size_t end, auto&& wanted) {
-    add_sub_rays(sub_light, caster, world_from_scanner, rows.begin, begin, end, wanted, image);
+    add_sub_rays(sub_light, caster, world_from_scanner, rows, begin, end, wanted, image);
   };
   if (s.sub_rays == 1 || s.aperture_m != 0) {  // blur may reach further than the next pixels
     parallel_chunks(pixels, ViewBatch::most, [&](std::size_t begin, std::size_t end) {
@@ -183,10 +198,12 @@ LightImage direct_light(const PhaseCamera& s, std::span<const Tone> tones, const
   CentralLight central = central_light(light, caster, world_from_scanner, rows);
   std::vector<char> refined(pixels);
   parallel_chunks(pixels, ViewBatch::most, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t centre = central.index(place_of(i, width));
-      refined[i] = !is_even(s, central, centre);
-      if (!refined[i]) copy(central.light.at(centre), image.at(i));
+    TileWalk walk(begin, width, rows.end - rows.begin);
+    for (std::size_t i = begin; i < end; ++i, walk.next()) {
+      const std::size_t pixel = index_of(walk.place(), width);
+      const std::size_t centre = central.index(walk.place());
+      refined[pixel] = !is_even(s, central, centre);
+      if (!refined[pixel]) copy(central.light.at(centre), image.at(pixel));
     }
     add(begin, end, [&](std::size_t i) { return refined[i] != 0; });
   });

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "libscan/core/units.h"
+#include "synth/scanners/phasors.h"
 #include "synth/scanners/surface_frame.h"
 
 namespace scan::synth {
@@ -15,39 +15,26 @@ namespace {
 
 using std::numbers::pi;
 
-// The unit square to the unit disk, equal areas to equal areas (Shirley and Chiu 1997).
-Eigen::Vector2d on_lens(const Eigen::Vector2d& unit_square) {
-  const Eigen::Vector2d v = 2 * unit_square - Eigen::Vector2d::Ones();
-  if (v.isZero(0)) return v;
-  const bool wide = std::abs(v.x()) > std::abs(v.y());
-  const double radius = wide ? v.x() : v.y();
-  const double angle = wide ? pi / 4 * v.y() / v.x() : pi / 2 - pi / 4 * v.x() / v.y();
-  return radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-}
-
-// Which of n cells of the lens the ray through cell i of the pixel takes: each is taken once, by a
-// stride near the golden section of n, shifted from pixel to pixel.
-int lens_cell(const PixelPlace& pixel, int i, int n) {
-  int stride = std::max(1, static_cast<int>(0.618034 * n));
-  while (std::gcd(stride, n) != 1) ++stride;
-  const long long shift = 7LL * pixel.column + 13LL * pixel.row;
-  return static_cast<int>((static_cast<long long>(stride) * i + shift) % n);
-}
-
 // Shares of light that a white surface facing its source would reflect to the lens.
 struct Response {
   double own = 0;      // of the device's light: pi f cos
   double ambient = 0;  // of light from all sides
 };
 
+// Of a matt surface of one brightness.
+std::optional<double> plain_albedo(const Scene& scene, const Hit& hit) {
+  const Material& material = scene.materials[scene.objects[hit.object].material];
+  const auto* matt = std::get_if<Lambert>(&material.bsdf);
+  if (!matt || !std::holds_alternative<PlainTexture>(material.texture)) return std::nullopt;
+  return matt->albedo;
+}
+
 // Of the surface that a view meets at `point` (scanner frame).
 Response response(const Scene& scene, const Hit& hit, const Eigen::Vector3d& point,
                   const Eigen::Vector3d& normal, const Eigen::Vector3d& in,
                   const Eigen::Vector3d& out) {
-  const Material& material = scene.materials[scene.objects[hit.object].material];
-  const auto* matt = std::get_if<Lambert>(&material.bsdf);
-  if (matt && std::holds_alternative<PlainTexture>(material.texture))
-    return {matt->albedo * std::max(0.0, normal.dot(in)), matt->albedo};
+  if (const auto albedo = plain_albedo(scene, hit))
+    return {*albedo * std::max(0.0, normal.dot(in)), *albedo};
   const SurfaceFrame frame({.point = point, .normal = normal, .hit = hit}, scene);
   return {frame.response(out, in), frame.albedo(out)};
 }
@@ -66,79 +53,56 @@ std::vector<Tone> tones_of(const PhaseCamera& s) {
   return tones;
 }
 
-// Without the rounding of the angle: it is 0, 90, 180 or 270 degrees.
-double modulation(const std::complex<double>& amplitude, int harmonic, int tap) {
-  const double values[] = {amplitude.real(), -amplitude.imag(), -amplitude.real(),
-                           amplitude.imag()};
-  return values[harmonic * tap % 4];
-}
-
-std::optional<LensRay> lens_ray(const PhaseCamera& s, const Eigen::Vector2d& place,
-                                const Eigen::Vector2d& lens) {
-  const auto toward = ray_through(s.camera, place);
-  if (!toward) return std::nullopt;
-  LensRay view;
-  const double norm = toward->norm();
-  const double cosine2 = 1 / (norm * norm);
-  view.share = 1 - s.vignetting * (1 - cosine2 * cosine2);
-  view.ray.direction = (1 / norm) * *toward;
-  if (s.aperture_m == 0) return view;
-  const Eigen::Vector3d sharp = s.focus_m * *toward;
-  view.ray.origin.head<2>() = s.aperture_m / 2 * lens;
-  const double to_sharp_m = (sharp - view.ray.origin).norm();
-  view.ray.direction = (sharp - view.ray.origin) / to_sharp_m;
-  view.extra_m = sharp.norm() - to_sharp_m;
-  return view;
-}
-
-std::optional<LensRay> sub_ray(const PhaseCamera& s, const PixelPlace& pixel, int i) {
-  if (s.sub_rays == 1) return lens_ray(s, Eigen::Vector2d(pixel.column, pixel.row), {0, 0});
-  Eigen::Vector2d lens = Eigen::Vector2d::Zero();
-  if (s.aperture_m != 0) {
-    const int cell = lens_cell(pixel, i, s.sub_rays * s.sub_rays);
-    lens = on_lens(sub_pixel({0, 0}, cell, s.sub_rays) + Eigen::Vector2d(0.5, 0.5));
+void DirectLight::find(const ViewBatch& batch, std::size_t begin, std::size_t end,
+                       BatchLight& light) const {
+  const bool straight_back = scanner.emitter_offset_m == 0 && scanner.aperture_m == 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t at = i - begin;
+    light.constant_e[at] = light.own_e[at] = light.path_m[at] = 0;
+    if (!batch.hit(i)) continue;
+    const LensRay& view = batch.view(i);
+    const Hit& hit = *batch.hit(i);
+    if (straight_back) {
+      if (const auto albedo = plain_albedo(scene, hit)) {
+        const double per_m = 1 / hit.distance_m, received = weight * view.share * *albedo;
+        const double cosine = -hit.normal.dot(batch.direction_in_world(i));
+        light.own_e[at] =
+            received * std::max(0.0, cosine) * scanner.electrons_at_1m * per_m * per_m;
+        light.path_m[at] = 2 * hit.distance_m;
+        light.constant_e[at] = received * scanner.ambient_electrons + light.own_e[at];
+        continue;
+      }
+    }
+    const Eigen::Vector3d point = view.ray.origin + hit.distance_m * view.ray.direction;
+    const Eigen::Vector3d to_emitter = Eigen::Vector3d(scanner.emitter_offset_m, 0, 0) - point;
+    const double distance_m = to_emitter.norm(), per_m = 1 / distance_m;
+    const Response share = response(scene, hit, point, scanner_from_world * hit.normal,
+                                    per_m * to_emitter, -view.ray.direction);
+    const double received = weight * view.share;
+    light.constant_e[at] = received * share.ambient * scanner.ambient_electrons;
+    if (batch.dark(i)) continue;
+    light.own_e[at] = received * share.own * scanner.electrons_at_1m * per_m * per_m;
+    light.path_m[at] = distance_m + hit.distance_m + view.extra_m;
+    light.constant_e[at] += light.own_e[at];
   }
-  return lens_ray(s, sub_pixel(pixel, i, s.sub_rays), lens);
 }
 
-void ViewBatch::add(const Pose& world_from_scanner, const LensRay& view, std::size_t owner) {
-  views_[size_] = view;
-  owners_[size_] = owner;
-  rays_[size_] = {.origin = world_from_scanner * view.ray.origin,
-                  .direction = world_from_scanner.linear() * view.ray.direction};
-  ++size_;
-}
-
-void ViewBatch::trace(const PhaseCamera& s, const RayCaster& caster,
-                      const Pose& world_from_scanner) {
-  const std::span hits(hits_.data(), size_);
-  caster.closest(std::span(rays_.data(), size_), hits);
-  for (std::size_t i = 0; i < size_; ++i)
-    if (hits[i]) hits[i] = facing(*hits[i], rays_[i].direction);
-  std::fill_n(dark_.begin(), size_, false);
-  // A light at the lens lights all that the lens sees.
-  if (s.emitter_offset_m == 0) return;
-  const Eigen::Vector3d light = world_from_scanner * Eigen::Vector3d(s.emitter_offset_m, 0, 0);
-  caster.occluded(hits, light, std::span(dark_.data(), size_));
+void DirectLight::turn(const Tone& tone, std::size_t count, BatchLight& light) const {
+  const auto first = [count](Column& column) { return std::span(column).first(count); };
+  phasors(tone.rad_per_m / (2 * pi), first(light.path_m), first(light.own_e), first(light.real_e),
+          first(light.imaginary_e));
+  for (std::size_t i = 0; i < count; ++i) light.real_e[i] *= tone.contrast;
+  for (std::size_t i = 0; i < count; ++i) light.imaginary_e[i] *= tone.contrast;
 }
 
 void DirectLight::add(const ViewBatch& batch, std::size_t i, const LightSum& sum) const {
-  if (!batch.hit(i)) return;
-  const LensRay& view = batch.view(i);
-  const Hit& hit = *batch.hit(i);
-  const Eigen::Vector3d point = view.ray.origin + hit.distance_m * view.ray.direction;
-  const Eigen::Vector3d to_emitter = Eigen::Vector3d(scanner.emitter_offset_m, 0, 0) - point;
-  const double distance_m = to_emitter.norm(), per_m = 1 / distance_m;
-  const Response share = response(scene, hit, point, scanner_from_world * hit.normal,
-                                  per_m * to_emitter, -view.ray.direction);
-  const double received = weight * view.share;
-  sum.constant_e += received * share.ambient * scanner.ambient_electrons;
-  if (batch.dark(i)) return;
-  const double own = received * share.own * scanner.electrons_at_1m * per_m * per_m;
-  const double path_m = distance_m + hit.distance_m + view.extra_m;
-  sum.constant_e += own;
-  for (std::size_t t = 0; t < tones.size(); ++t)
-    sum.amplitude_e[t] += std::polar(1.0, tones[t].rad_per_m * path_m) * (tones[t].contrast * own);
+  BatchLight light;
+  find(batch, i, i + 1, light);
+  sum.constant_e += light.constant_e[0];
+  for (std::size_t t = 0; t < tones.size(); ++t) {
+    turn(tones[t], 1, light);
+    sum.amplitude_e[t] += std::complex(light.real_e[0], light.imaginary_e[0]);
+  }
 }
 
 }  // namespace scan::synth

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "libscan/core/parallel.h"
+#include "libscan/core/random_blocks.h"
+#include "synth/block_detector.h"
 
 namespace scan::synth {
 namespace {
@@ -37,25 +39,94 @@ void read_pixel_taps(const Readout& r, std::size_t pixel, Mean&& mean_e) {
     for (int k = 0; k < 4; ++k) read(f, k);
 }
 
-void read_light(const Readout& r, std::span<const Tone> tones, std::size_t pixel,
-                const LightSum& light) {
-  const double moved_m = 2 * offset_m(r.scanner, r.address, pixel);
-  if (moved_m != 0)
-    for (std::size_t t = 0; t < tones.size(); ++t)
-      light.amplitude_e[t] *= std::polar(1.0, tones[t].rad_per_m * moved_m);
-  read_pixel_taps(r, pixel, [&](int frequency, int tap) {
-    double mean = light.constant_e;
-    for (std::size_t t = 0; t < tones.size(); ++t)
-      if (tones[t].frequency == frequency)
-        mean += modulation(light.amplitude_e[t], tones[t].harmonic, tap);
-    return mean;
-  });
-}
+constexpr std::size_t pixels_at_once = 64;
+constexpr std::size_t per_block = 4;  // numbers of a stream
+// Where a pixel's stream has the tap i that is read by itself: i times as many blocks later as a
+// reading can need.
+constexpr std::uint32_t alone_block = 1u << 31, blocks_alone = 256;
 
-// Calls read(pixel, light) for every pixel with its direct light.
-template <class Read>
-void for_direct_light(const Readout& r, std::span<const Tone> tones, Read&& read) {
+// Reads the taps of some pixels by their light, each frequency by one block of its pixel's stream.
+class TapReader {
+ public:
+  TapReader(const Readout& readout, std::span<const Tone> tones)
+      : r_(readout), tones_(tones), detector_(readout.scanner.sensor, readout.reading) {
+    const Exposure& exposed = readout.exposure;
+    for (int f = 0; f < static_cast<int>(readout.frames.taps.size()); ++f)
+      for (int k = 0; k < 4; ++k)
+        if (all() || (f == exposed.frequency && k == exposed.tap))
+          taps_.push_back(readout.frames.taps[f][k].pixels.data());
+  }
+
+  // light_of(k) of pixels[k].
+  template <class LightOf>
+  void read(std::span<const std::size_t> pixels, LightOf&& light_of) const {
+    Memory memory;
+    const std::size_t blocks = pixels.size() * frequencies();
+    memory.expected_e.assign(blocks * per_block, 0.0);
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      const std::size_t first = k * frequencies() * per_block;
+      expect(pixels[k], light_of(k),
+             std::span(memory.expected_e).subspan(first, frequencies() * per_block));
+      for (std::size_t f = 0; f < frequencies(); ++f)
+        memory.blocks.push_back({ray_address(r_, pixels[k]), f});
+    }
+    detect(memory);
+    for (std::size_t k = 0; k < pixels.size(); ++k) deliver(memory, k, pixels[k]);
+  }
+
+ private:
+  struct Memory {
+    std::vector<BlockAddress> blocks;
+    std::vector<double> expected_e, normals;
+    std::vector<std::uint16_t> readings;
+  };
+
+  bool all() const { return r_.exposure.frequency < 0; }
+  std::size_t frequencies() const { return all() ? r_.frames.taps.size() : 1; }
+
+  void expect(std::size_t pixel, const LightSum& light, std::span<double> expected_e) const {
+    const double moved_m = 2 * offset_m(r_.scanner, r_.address, pixel);
+    for (double& e : expected_e) e = light.constant_e;
+    for (std::size_t t = 0; t < tones_.size(); ++t) {
+      const Tone& tone = tones_[t];
+      std::complex<double> amplitude_e = light.amplitude_e[t];
+      if (moved_m != 0) amplitude_e *= std::polar(1.0, tone.rad_per_m * moved_m);
+      double* const taps_e = &expected_e[all() ? tone.frequency * per_block : 0];
+      if (!all()) taps_e[0] += modulation(amplitude_e, tone.harmonic, r_.exposure.tap);
+      for (int k = 0; all() && k < 4; ++k) taps_e[k] += modulation(amplitude_e, tone.harmonic, k);
+    }
+  }
+
+  void detect(Memory& memory) const {
+    memory.readings.resize(memory.expected_e.size());
+    if (detector_.needs_normals()) {
+      memory.normals.resize(memory.expected_e.size());
+      draw_normals(r_.address.seed, r_.address.scan, memory.blocks, memory.normals);
+    }
+    detector_.read(memory.expected_e, memory.normals, memory.readings, [&](std::size_t i) {
+      const auto& [ray, block] = memory.blocks[i / per_block];
+      const auto tap = static_cast<std::uint32_t>(per_block * block + i % per_block);
+      RandomStream random(r_.address.seed, r_.address.scan, ray, alone_block + blocks_alone * tap);
+      return read_pixel(r_.scanner.sensor, r_.reading, std::max(0.0, memory.expected_e[i]), random);
+    });
+  }
+
+  void deliver(const Memory& memory, std::size_t k, std::size_t pixel) const {
+    const std::uint16_t* reading = &memory.readings[k * frequencies() * per_block];
+    for (std::uint16_t* const tap : taps_) tap[pixel] = *reading++;
+  }
+
+  const Readout& r_;
+  std::span<const Tone> tones_;
+  BlockDetector detector_;
+  std::vector<std::uint16_t*> taps_;  // that are exposed
+};
+
+// Reads the pixels that are wanted by their direct light.
+template <class Wanted>
+void read_by_direct_light(const Readout& r, std::span<const Tone> tones, Wanted&& wanted) {
   const Camera& camera = r.scanner.camera;
+  const TapReader reader(r, tones);
   const int bands = (camera.height_px + band_rows - 1) / band_rows;
   parallel_for(
       static_cast<std::size_t>(bands),
@@ -65,7 +136,13 @@ void for_direct_light(const Readout& r, std::span<const Tone> tones, Read&& read
         LightImage light =
             direct_light(r.scanner, tones, r.caster, r.world_from_scanner, {begin, end});
         const std::size_t first = static_cast<std::size_t>(begin) * camera.width_px;
-        parallel_for(light.constant_e.size(), [&](std::size_t i) { read(first + i, light.at(i)); });
+        parallel_chunks(
+            light.constant_e.size(), pixels_at_once, [&](std::size_t from, std::size_t to) {
+              std::vector<std::size_t> pixels;
+              for (std::size_t i = from; i < to; ++i)
+                if (wanted(first + i)) pixels.push_back(first + i);
+              reader.read(pixels, [&](std::size_t k) { return light.at(pixels[k] - first); });
+            });
       },
       1);
 }
@@ -100,9 +177,7 @@ RenderStatistics SamplingError::statistics() const {
 
 void read_direct_light(const Readout& r) {
   const std::vector<Tone> tones = tones_of(r.scanner, r.exposure);
-  for_direct_light(r, tones, [&](std::size_t pixel, const LightSum& light) {
-    read_light(r, tones, pixel, light);
-  });
+  read_by_direct_light(r, tones, [](std::size_t) { return true; });
 }
 
 SamplingError read_by_paths(const Readout& r, const LightTransport& transport, PathNeed need) {
@@ -111,9 +186,7 @@ SamplingError read_by_paths(const Readout& r, const LightTransport& transport, P
   std::vector<char> by_paths(r.frames.taps[0][0].pixels.size(), 1);
   if (need == PathNeed::interreflection) {
     by_paths = surroundings_matter(view, tones);
-    for_direct_light(r, tones, [&](std::size_t pixel, const LightSum& light) {
-      if (!by_paths[pixel]) read_light(r, tones, pixel, light);
-    });
+    read_by_direct_light(r, tones, [&](std::size_t pixel) { return !by_paths[pixel]; });
   }
   // enough for each stream to meet its share of bright paths before it may stop
   const SamplingGoal goal{.least_samples = 64};

@@ -9,6 +9,7 @@
 #include "libscan/core/parallel.h"
 #include "synth/scanners/first_surface.h"
 #include "synth/scanners/limits.h"
+#include "synth/scanners/pixel_grid.h"
 #include "synth/scanners/pulsed_lidar_recorder.h"
 
 namespace scan::synth {
@@ -102,6 +103,38 @@ Waveforms empty_frames(const PulsedLidar& s, const SampleAxis& axis,
   return frames;
 }
 
+// Records pulses [begin, end) in the order that they are best traced in.
+LidarPaths::Quality record(const LidarScan& scan, const Pose& world_from_scanner, std::size_t begin,
+                           std::size_t end, Waveforms& frames) {
+  const PulsedLidar& s = scan.beam.scanner;
+  const bool moving = is_moving(s);
+  const double least_dn = gate_dn(s, frames.calibration.sensor);
+  const std::size_t kept = frames.samples_per_ray;
+  const auto columns = static_cast<int>(frames.grid.columns);
+  TileWalk walk(begin, columns, static_cast<int>(frames.grid.rows));
+  LidarRecorder recorder(scan);
+  std::vector<Pulse> pulses;
+  std::vector<Pose> poses(moving ? rays_at_once : 0);
+  for (std::size_t first = begin; first < end; first += rays_at_once) {
+    pulses.clear();
+    for (std::size_t k = 0; k < std::min(rays_at_once, end - first); ++k, walk.next()) {
+      const std::size_t ray = index_of(walk.place(), columns);
+      if (moving) poses[k] = world_from_scanner * scan_from_scanner(s, ray);
+      pulses.push_back({ray, moving ? &poses[k] : &world_from_scanner, frames.directions[ray]});
+    }
+    const auto windows = recorder.read(pulses);
+    for (std::size_t i = 0; i < pulses.size(); ++i) {
+      const auto window = windows.subspan(i * recorder.samples(), recorder.samples());
+      std::size_t start = 0;
+      if (!frames.first_sample.empty())
+        start = frames.first_sample[pulses[i].ray] = gate_start(window, s.gate.samples, least_dn);
+      std::copy_n(window.begin() + static_cast<std::ptrdiff_t>(start), kept,
+                  frames.samples.begin() + static_cast<std::ptrdiff_t>(pulses[i].ray * kept));
+    }
+  }
+  return recorder.quality();
+}
+
 }  // namespace
 
 void check(const PulsedLidar& s) {
@@ -152,25 +185,10 @@ Rendering render(const PulsedLidar& device, const RayCaster& caster, const Pose&
   const LidarBeam beam{s, caster, section};
   const LidarScan scan = prepare_scan(beam, address, effects);
   Waveforms frames = empty_frames(s, scan.axis, scan.reading);
-  const double least_dn = gate_dn(s, frames.calibration.sensor);
-  const bool moving = is_moving(s);
-  const auto record = [&](std::size_t begin, std::size_t end) {
-    LidarRecorder recorder(scan);
-    for (std::size_t ray = begin; ray < end; ++ray) {
-      const Pose pose =
-          moving ? world_from_scanner * scan_from_scanner(s, ray) : world_from_scanner;
-      const auto readings = recorder.read(pose, frames.directions[ray], ray);
-      std::uint32_t first = 0;
-      if (!frames.first_sample.empty())
-        first = frames.first_sample[ray] = gate_start(readings, s.gate.samples, least_dn);
-      std::copy_n(
-          readings.begin() + first, frames.samples_per_ray,
-          frames.samples.begin() + static_cast<std::ptrdiff_t>(ray) * frames.samples_per_ray);
-    }
-    return recorder.quality();
-  };
-  const auto quality =
-      ordered_sum(frames.directions.size(), rays_at_once, LidarPaths::Quality{}, record);
+  const auto quality = ordered_sum(frames.directions.size(), 8 * rays_at_once,
+                                   LidarPaths::Quality{}, [&](std::size_t begin, std::size_t end) {
+                                     return record(scan, world_from_scanner, begin, end, frames);
+                                   });
   return {.frames = std::move(frames), .statistics = statistics_of(quality)};
 }
 

@@ -5,20 +5,24 @@
 #include <cmath>
 #include <numbers>
 
+#include "libscan/core/parallel.h"
+
 namespace scan::synth {
 namespace {
 
-Eigen::Vector3d direction_at(const RasterPattern& p, int row, int column) {
-  const double azimuth = p.width_rad * ((column + 0.5) / p.columns - 0.5);
-  const double down = p.height_rad * ((row + 0.5) / p.rows - 0.5);
-  return {std::cos(down) * std::sin(azimuth), std::sin(down), std::cos(down) * std::cos(azimuth)};
+// Angles of columns and rows.
+double azimuth(const RasterPattern& p, int column) {
+  return p.width_rad * ((column + 0.5) / p.columns - 0.5);
 }
-
-Eigen::Vector3d direction_at(const SpinningPattern& p, int row, int column) {
-  const double azimuth = 2 * std::numbers::pi * column / p.columns;
+double down(const RasterPattern& p, int row) {
+  return p.height_rad * ((row + 0.5) / p.rows - 0.5);
+}
+double azimuth(const SpinningPattern& p, int column) {
+  return 2 * std::numbers::pi * column / p.columns;
+}
+double down(const SpinningPattern& p, int row) {
   const double place = p.rows > 1 ? static_cast<double>(row) / (p.rows - 1) : 0.5;
-  const double up = p.highest_rad + place * (p.lowest_rad - p.highest_rad);
-  return {std::cos(up) * std::sin(azimuth), -std::sin(up), std::cos(up) * std::cos(azimuth)};
+  return -(p.highest_rad + place * (p.lowest_rad - p.highest_rad));
 }
 
 std::size_t pulse_number(const RasterPattern&, std::size_t ray) {
@@ -62,13 +66,24 @@ RayGrid ray_grid(const PulsedLidar& scanner) {
 }
 
 std::vector<Eigen::Vector3d> ray_directions(const PulsedLidar& scanner) {
-  std::vector<Eigen::Vector3d> directions;
+  const RayGrid grid = ray_grid(scanner);
+  const std::size_t columns = grid.columns;
+  std::vector<Eigen::Vector3d> directions(grid.rows * columns);
   std::visit(
       [&](const auto& pattern) {
-        directions.reserve(static_cast<std::size_t>(pattern.rows) * pattern.columns);
-        for (int row = 0; row < pattern.rows; ++row)
-          for (int column = 0; column < pattern.columns; ++column)
-            directions.push_back(direction_at(pattern, row, column).normalized());
+        std::vector<Eigen::Vector2d> across(columns);  // sine and cosine
+        for (std::size_t i = 0; i < columns; ++i) {
+          const double angle = azimuth(pattern, static_cast<int>(i));
+          across[i] = {std::sin(angle), std::cos(angle)};
+        }
+        parallel_chunks(directions.size(), columns, [&](std::size_t begin, std::size_t end) {
+          const double angle = down(pattern, static_cast<int>(begin / columns));
+          const double sine = std::sin(angle), cosine = std::cos(angle);
+          for (std::size_t i = begin; i < end; ++i) {
+            const Eigen::Vector2d& a = across[i - begin];
+            directions[i] = Eigen::Vector3d(cosine * a.x(), sine, cosine * a.y()).normalized();
+          }
+        });
       },
       scanner.pattern);
   return directions;

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "libscan/core/units.h"
-#include "synth/scanners/first_surface.h"
 
 namespace scan::synth {
 namespace {
@@ -21,6 +20,7 @@ constexpr double most_electrons = 1e15;
 constexpr double pulse_reach_sigmas = 9;  // a share of 2e-19 of the pulse lies beyond
 constexpr double share_of_noise = 0.1;    // what the closed form may err by
 constexpr int least_rings = 4;            // fewer cost no more than the pilot
+constexpr std::size_t rays_at_once = 64;
 
 // What opposite pilot rays tell of a quantity f over the beam: f = centre + slope . place + ...
 struct Trend {
@@ -49,6 +49,25 @@ Trend trend(double centre, const std::array<double, 2 * pairs>& rim, double radi
         std::max(result.skew, std::abs(half - radius * result.slope.dot(pair_direction(k))));
   }
   return result;
+}
+
+// Of a beam that is not sampled across.
+BeamRay centre_ray(const Eigen::Vector3d& direction) {
+  return {.origin = Eigen::Vector3d::Zero(), .direction = direction};
+}
+
+Ray view_along(const Pose& world_from_scanner, const BeamRay& ray) {
+  return {.origin = world_from_scanner * ray.origin,
+          .direction = world_from_scanner.linear() * ray.direction};
+}
+
+// Of a surface, straight back, over that of a white Lambert one.
+double white_share(const Scene& scene, const Hit& hit, double cosine) {
+  const Material& material = scene.materials[scene.objects[hit.object].material];
+  const auto* matt = std::get_if<Lambert>(&material.bsdf);
+  if (matt && std::holds_alternative<PlainTexture>(material.texture)) return matt->albedo;
+  const Eigen::Vector3d back(std::sqrt(std::max(0.0, 1 - cosine * cosine)), 0, cosine);
+  return std::numbers::pi * evaluate(bsdf_at(scene, hit.object, hit.triangle, hit.point), back, back);
 }
 
 }  // namespace
@@ -80,42 +99,58 @@ SampleRange add_echo(const SampleAxis& axis, const Echo& echo, std::span<double>
   return {static_cast<std::size_t>(first), static_cast<std::size_t>(behind)};
 }
 
-std::optional<Echo> LidarBeam::echo_of(const Pose& world_from_scanner, const BeamRay& ray) const {
-  const auto seen = first_surface(caster, world_from_scanner, {ray.origin, ray.direction});
-  if (!seen) return std::nullopt;
-  const double range_m = seen->point.norm();
-  const double cosine = std::abs(seen->normal.dot(ray.direction));
-  const Eigen::Vector3d back(std::sqrt(std::max(0.0, 1 - cosine * cosine)), 0, cosine);
-  const Bsdf bsdf = bsdf_at(caster.scene(), seen->hit.object, seen->hit.triangle, seen->hit.point);
-  const double albedo = std::numbers::pi * evaluate(bsdf, back, back);  // of a Lambert surface
+std::optional<Echo> LidarBeam::echo_of(const Pose& world_from_scanner, const BeamRay& ray,
+                                       const std::optional<Hit>& hit) const {
+  if (!hit) return std::nullopt;
+  const bool central = ray.origin.isZero(0);
+  const double range_m =
+      central ? hit->distance_m : (ray.origin + hit->distance_m * ray.direction).norm();
+  const double cosine = std::abs(hit->normal.dot(world_from_scanner.linear() * ray.direction));
   const double falloff = reference_range_m * reference_range_m / (range_m * range_m);
-  return Echo{
-      .time_s = 2 * range_m / speed_of_light_m_s,
-      .electrons = std::min(most_electrons, scanner.electrons_at_10m * albedo * cosine * falloff) *
-                   ray.share,
-      .sigma_s = scanner.pulse_sigma_s};
+  const double electrons =
+      scanner.electrons_at_10m * white_share(caster.scene(), *hit, cosine) * cosine * falloff;
+  return Echo{.time_s = 2 * range_m / speed_of_light_m_s,
+              .electrons = std::min(most_electrons, electrons) * ray.share,
+              .sigma_s = scanner.pulse_sigma_s};
+}
+
+void LidarBeam::trace(const Pose& world_from_scanner, std::span<const BeamRay> rays,
+                      std::span<std::optional<Echo>> echoes) const {
+  std::array<Ray, rays_at_once> views;
+  std::array<std::optional<Hit>, rays_at_once> hits;
+  for (std::size_t first = 0; first < rays.size(); first += rays_at_once) {
+    const std::size_t count = std::min(rays_at_once, rays.size() - first);
+    for (std::size_t i = 0; i < count; ++i)
+      views[i] = view_along(world_from_scanner, rays[first + i]);
+    caster.closest(std::span(views).first(count), std::span(hits).first(count));
+    for (std::size_t i = 0; i < count; ++i)
+      echoes[first + i] = echo_of(world_from_scanner, rays[first + i], hits[i]);
+  }
 }
 
 void LidarBeam::sub_ray_echoes(const Pose& world_from_scanner, const Eigen::Vector3d& direction,
                                std::vector<Echo>& echoes) const {
-  for (const Eigen::Vector2d& place : section.places)
-    if (const auto echo = echo_of(world_from_scanner, section.ray(direction, place)))
-      echoes.push_back(*echo);
+  std::vector<BeamRay> rays;
+  for (const Eigen::Vector2d& place : section.places) rays.push_back(section.ray(direction, place));
+  std::vector<std::optional<Echo>> found(rays.size());
+  trace(world_from_scanner, rays, found);
+  for (const auto& echo : found)
+    if (echo) echoes.push_back(*echo);
 }
 
 std::optional<Echo> LidarBeam::closed_form(const Pose& world_from_scanner,
                                            const Eigen::Vector3d& direction) const {
-  const auto whole_beam = [&](const Eigen::Vector2d& place) {
-    BeamRay ray = section.ray(direction, place);
-    ray.share = 1;
-    return echo_of(world_from_scanner, ray);
-  };
-  const auto centre = whole_beam(Eigen::Vector2d::Zero());
+  std::array<BeamRay, 1 + 2 * pairs> pilots = {section.ray(direction, Eigen::Vector2d::Zero())};
+  for (int k = 0; k < 2 * pairs; ++k)
+    pilots[1 + k] = section.ray(direction, section.rim * (k % 2 ? -1 : 1) * pair_direction(k / 2));
+  for (BeamRay& pilot : pilots) pilot.share = 1;
+  std::array<std::optional<Echo>, 1 + 2 * pairs> found;
+  trace(world_from_scanner, pilots, found);
+  const auto& centre = found[0];
   if (!centre || !(centre->electrons > 0)) return std::nullopt;
   std::array<double, 2 * pairs> time_s, electrons;
   for (int k = 0; k < 2 * pairs; ++k) {
-    const Eigen::Vector2d outward = (k % 2 ? -1 : 1) * pair_direction(k / 2);
-    const auto rim = whole_beam(section.rim * outward);
+    const auto& rim = found[1 + k];
     if (!rim) return std::nullopt;
     time_s[k] = rim->time_s;
     electrons[k] = rim->electrons;
@@ -143,6 +178,33 @@ void LidarBeam::echoes(const Pose& world_from_scanner, const Eigen::Vector3d& di
     return;
   }
   sub_ray_echoes(world_from_scanner, direction, echoes);
+}
+
+void LidarBeam::centre_echoes(std::span<const Pulse> pulses, PulseEchoes& found) const {
+  std::array<Ray, rays_at_once> views;
+  std::array<std::optional<Hit>, rays_at_once> hits;
+  for (std::size_t first = 0; first < pulses.size(); first += rays_at_once) {
+    const auto some = pulses.subspan(first, std::min(rays_at_once, pulses.size() - first));
+    for (std::size_t i = 0; i < some.size(); ++i)
+      views[i] = view_along(*some[i].world_from_scanner, centre_ray(some[i].direction));
+    caster.closest(std::span(views).first(some.size()), std::span(hits).first(some.size()));
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      if (const auto echo =
+              echo_of(*some[i].world_from_scanner, centre_ray(some[i].direction), hits[i]))
+        found.echoes.push_back(*echo);
+      found.ends.push_back(found.echoes.size());
+    }
+  }
+}
+
+void LidarBeam::echoes(std::span<const Pulse> pulses, PulseEchoes& found) const {
+  found.echoes.clear();
+  found.ends.clear();
+  if (section.places.size() == 1) return centre_echoes(pulses, found);
+  for (const Pulse& pulse : pulses) {
+    echoes(*pulse.world_from_scanner, pulse.direction, found.echoes);
+    found.ends.push_back(found.echoes.size());
+  }
 }
 
 }  // namespace scan::synth

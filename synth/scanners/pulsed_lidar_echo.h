@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "synth/scanners/pulse_table.h"
 #include "synth/scanners/pulsed_lidar_beam.h"
 
 namespace scan::synth {
@@ -26,10 +27,19 @@ struct SampleAxis {
 SampleAxis sample_axis(const PulsedLidar& scanner);
 
 // Adds the echo's Gaussian, integrated over each sample's interval. Returns the samples touched.
-struct SampleRange {
-  std::size_t first = 0, behind = 0;
-};
 SampleRange add_echo(const SampleAxis& axis, const Echo& echo, std::span<double> samples);
+
+// A beam on its way.
+struct Pulse {
+  std::size_t ray = 0;                       // its number in the scan
+  const Pose* world_from_scanner = nullptr;  // as it is fired
+  Eigen::Vector3d direction;                 // unit, scanner frame
+};
+// Their echoes: those of pulse i end before ends[i].
+struct PulseEchoes {
+  std::vector<Echo> echoes;
+  std::vector<std::size_t> ends;
+};
 
 // One beam in one scene. `world_from_scanner` as the ray is fired.
 struct LidarBeam {
@@ -48,9 +58,15 @@ struct LidarBeam {
   // seen.
   void echoes(const Pose& world_from_scanner, const Eigen::Vector3d& direction,
               std::vector<Echo>& echoes) const;
+  // Of neighbouring pulses, their rays traced together.
+  void echoes(std::span<const Pulse> pulses, PulseEchoes& found) const;
 
  private:
-  std::optional<Echo> echo_of(const Pose& world_from_scanner, const BeamRay& ray) const;
+  std::optional<Echo> echo_of(const Pose& world_from_scanner, const BeamRay& ray,
+                              const std::optional<Hit>& hit) const;
+  void trace(const Pose& world_from_scanner, std::span<const BeamRay> rays,
+             std::span<std::optional<Echo>> echoes) const;
+  void centre_echoes(std::span<const Pulse> pulses, PulseEchoes& found) const;
   std::optional<Echo> closed_form(const Pose& world_from_scanner,
                                   const Eigen::Vector3d& direction) const;
 };

@@ -31,7 +31,7 @@ double LidarFog::returned_e(std::size_t sample, double far_m) const {
   return soft_target_electrons(target_, far_m, pulse_sigma_s_, begin_s, begin_s + axis_.interval_s);
 }
 
-void LidarFog::dim(std::vector<Echo>& echoes) const {
+void LidarFog::dim(std::span<Echo> echoes) const {
   for (Echo& echo : echoes)  // the way there and back is c times the time
     echo.electrons *= std::exp(-target_.extinction_per_m * speed_of_light_m_s * echo.time_s);
 }

@@ -16,7 +16,7 @@ class LidarFog {
   LidarFog(const PulsedLidar& scanner, const Medium& medium, const SampleAxis& axis);
 
   // Of the echoes' energy what gets there and back.
-  void dim(std::vector<Echo>& echoes) const;
+  void dim(std::span<Echo> echoes) const;
   // Adds what the fog sends back from before `far_m`; returns the samples touched.
   SampleRange add(double far_m, std::span<double> samples) const;
 

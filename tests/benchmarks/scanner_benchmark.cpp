@@ -1,104 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// Scanners against bare ray casting: direct-light frames of each scanner on bumpy balls of 10^4 to
+// Scanners against bare ray casting: direct-light frames of each scanner on bumpy balls of 10^3 to
 // 10^6 triangles, beside Embree alone (native triangles, ROBUST, rtcIntersect1) on the same rays
-// and threads.
+// and threads, one pass of it after each frame.
 //
-// `rays_per_second` counts all rays that a frame needs, those towards the light included; `of_raw`
-// is that over Embree's rate in the same process. `peak_mib` is the process's so far. Environment
-// LIBSCAN_BENCHMARK_FULL=1 adds the large jobs: a phase frame of a megapixel with 9 sub-rays, ten
-// million pulses, and 400 laser steps over a million triangles.
+// `of_raw` is the rate of all rays that a frame needs over Embree's, by the clock on the wall, and
+// `of_raw_cpu` by the processors' time, which other work on the machine disturbs less. Phase camera
+// and lidar have their light at the eye: there are no rays towards it, on either side. After the
+// runs the cost's exponents, by a straight line through the logarithms: against rays (pixels,
+// pulses, steps) and against triangles. `peak_mib` is the process's so far. Environment
+// LIBSCAN_BENCHMARK_FULL=1 adds 10^7 rays and the large jobs: a phase frame of a megapixel with up
+// to 9 sub-rays, ten million pulses, and 400 laser steps, each over a million triangles.
 #include <benchmark/benchmark.h>
-#include <embree3/rtcore.h>
 
 #include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <map>
 #include <numbers>
+#include <string>
 
 #include "libscan/core/cost.h"
 #include "libscan/core/parallel.h"
 #include "synth/scanner.h"
+#include "synth/scanners/pulsed_lidar_beam.h"
+#include "tests/benchmarks/raw_embree.h"
 
 namespace scan::synth {
 namespace {
-
-// A ball of radius 0.35 with bumps, of about `triangles` triangles, 1.2 m before the scanner.
-Scene bumpy_ball(int triangles) {
-  const int rows = std::max(4, static_cast<int>(std::sqrt(triangles / 4.0)));
-  const int columns = 2 * rows;
-  Mesh mesh;
-  for (int i = 0; i <= rows; ++i)
-    for (int j = 0; j < columns; ++j) {
-      const double polar = std::numbers::pi * i / rows;
-      const double around = 2 * std::numbers::pi * j / columns;
-      const double r = 0.35 + 0.02 * std::sin(9 * polar) * std::cos(11 * around);
-      mesh.vertices.emplace_back(r * std::sin(polar) * std::cos(around), r * std::cos(polar),
-                                 1.2 + r * std::sin(polar) * std::sin(around));
-    }
-  const auto at = [&](int i, int j) {
-    return static_cast<std::uint32_t>(i * columns + j % columns);
-  };
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j) {
-      mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
-      mesh.triangles.push_back({at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
-    }
-  Object ball;
-  ball.name = "ball";
-  ball.geometry = std::move(mesh);
-  return {.objects = {std::move(ball)}, .materials = {{.name = "matt"}}};
-}
-
-// Embree alone over the same triangles.
-class RawEmbree {
- public:
-  explicit RawEmbree(const Mesh& mesh) : device_(rtcNewDevice(nullptr)) {
-    scene_ = rtcNewScene(device_);
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                3 * sizeof(float), mesh.vertices.size()));
-    for (const Eigen::Vector3d& v : mesh.vertices)
-      for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(v[k]);
-    auto* indices = static_cast<unsigned*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(unsigned), mesh.triangles.size()));
-    for (const Triangle& t : mesh.triangles)
-      for (const std::uint32_t corner : t) *indices++ = corner;
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-  }
-  ~RawEmbree() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  RawEmbree(const RawEmbree&) = delete;
-  RawEmbree& operator=(const RawEmbree&) = delete;
-
-  bool hits(const Eigen::Vector3d& direction) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit ray{};
-    ray.ray.dir_x = static_cast<float>(direction.x());
-    ray.ray.dir_y = static_cast<float>(direction.y());
-    ray.ray.dir_z = static_cast<float>(direction.z());
-    ray.ray.tfar = INFINITY;
-    ray.ray.mask = ~0u;
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_, &context, &ray);
-    return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-  }
-
- private:
-  RTCDevice device_;
-  RTCScene scene_ = nullptr;
-};
 
 PhaseCamera phase_camera(int width, int sub_rays) {
   const double focal = 1.2 * width;
@@ -126,11 +57,6 @@ LaserLine laser(int steps) {
           .min_range_m = 0.3};
 }
 
-std::map<int, double>& raw_rates() {
-  static std::map<int, double> rates;
-  return rates;
-}
-
 const Scene& scene_of(int triangles) {
   static std::map<int, Scene> scenes;
   auto [found, is_new] = scenes.try_emplace(triangles);
@@ -138,102 +64,191 @@ const Scene& scene_of(int triangles) {
   return found->second;
 }
 
-std::vector<Eigen::Vector3d> pixel_directions(const PhaseCamera& s) {
+std::vector<Eigen::Vector3d> directions_of(const PhaseCamera& s) {
   std::vector<Eigen::Vector3d> directions;
   for (int row = 0; row < s.camera.height_px; ++row)
     for (int column = 0; column < s.camera.width_px; ++column)
       directions.push_back(ray_through(s.camera, Eigen::Vector2d(column, row))->normalized());
   return directions;
 }
-
-void embree_alone(benchmark::State& state) {
-  const int triangles = static_cast<int>(state.range(0));
-  const RawEmbree raw(std::get<Mesh>(scene_of(triangles).objects[0].geometry));
-  const auto directions = pixel_directions(phase_camera(640, 1));
-  double seconds = 0;
-  std::atomic<std::size_t> hits = 0;
-  for (auto _ : state) {
-    const Stopwatch watch;
-    parallel_chunks(directions.size(), 4096, [&](std::size_t first, std::size_t last) {
-      std::size_t found = 0;
-      for (std::size_t i = first; i < last; ++i) found += raw.hits(directions[i]);
-      hits += found;
-    });
-    seconds += watch.seconds();
-  }
-  const double rate = static_cast<double>(directions.size() * state.iterations()) / seconds;
-  raw_rates()[triangles] = rate;
-  state.counters["rays_per_second"] = rate;
-  state.counters["hit_share"] =
-      static_cast<double>(hits) / static_cast<double>(directions.size() * state.iterations());
-}
-
-template <class Device>
-void frame(benchmark::State& state, const Device& device, double rays, const EffectSet& effects) {
-  const int triangles = static_cast<int>(state.range(0));
-  const RayCaster caster(scene_of(triangles));
-  double seconds = 0;
-  for (auto _ : state) {
-    const Stopwatch watch;
-    benchmark::DoNotOptimize(render(device, caster, Pose::Identity(), {}, effects));
-    seconds += watch.seconds();
-  }
-  const double rate = rays * static_cast<double>(state.iterations()) / seconds;
-  state.counters["seconds"] = seconds / static_cast<double>(state.iterations());
-  state.counters["rays_per_second"] = rate;
-  if (raw_rates().contains(triangles)) state.counters["of_raw"] = rate / raw_rates()[triangles];
-  state.counters["peak_mib"] = peak_memory_mib();
+std::vector<Eigen::Vector3d> directions_of(const PulsedLidar& s) {
+  return ray_directions(s);
 }
 
 const EffectSet sensor_effects = {Effect::shot_noise, Effect::read_noise, Effect::quantisation,
                                   Effect::footprint};
 
-void phase_frame(benchmark::State& state) {
-  frame(state, phase_camera(640, 1), 640.0 * 480, sensor_effects);
+// By the clock and by all processors.
+struct Times {
+  double wall_s = 0, cpu_s = 0;
+};
+template <class Work>
+void add_time(Times& times, Work&& work) {
+  const std::clock_t start = std::clock();
+  const Stopwatch watch;
+  work();
+  times.wall_s += watch.seconds();
+  times.cpu_s += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
-void phase_frame_without_noise(benchmark::State& state) {
-  frame(state, phase_camera(640, 1), 640.0 * 480, {});
+
+void trace_alone(const RawEmbree& raw, const std::vector<Eigen::Vector3d>& directions) {
+  std::atomic<std::size_t> hits = 0;
+  parallel_chunks(directions.size(), 512, [&](std::size_t first, std::size_t last) {
+    std::size_t found = 0;
+    for (std::size_t i = first; i < last; ++i) found += raw.hits(directions[i]);
+    hits += found;
+  });
+  benchmark::DoNotOptimize(hits.load());
 }
-void lidar_scan(benchmark::State& state) {
-  frame(state, lidar(640), 640.0 * 480, sensor_effects);
+
+// Seconds of jobs by their size.
+std::map<std::string, std::map<double, double>>& costs() {
+  static std::map<std::string, std::map<double, double>> all;
+  return all;
 }
-void lidar_scan_without_noise(benchmark::State& state) {
-  frame(state, lidar(640), 640.0 * 480, {});
+
+template <class Device>
+double timed_frame(benchmark::State& state, const RayCaster& caster, const Device& device,
+                   const EffectSet& effects, Times& times) {
+  const double before_s = times.wall_s;
+  add_time(times, [&] {
+    benchmark::DoNotOptimize(render(device, caster, Pose::Identity(), {}, effects));
+  });
+  state.SetIterationTime(times.wall_s - before_s);
+  return times.wall_s - before_s;
 }
-void laser_steps(benchmark::State& state) {
-  frame(state, laser(8), 8.0 * 640 * 480, sensor_effects);
+
+template <class Device>
+void frame_beside_raw(benchmark::State& state, const Device& device, const EffectSet& effects) {
+  const int triangles = static_cast<int>(state.range(0));
+  const RayCaster caster(scene_of(triangles));
+  const RawEmbree raw(std::get<Mesh>(scene_of(triangles).objects[0].geometry));
+  const auto directions = directions_of(device);
+  trace_alone(raw, directions);
+  Times ours, theirs;
+  for (auto _ : state) {
+    timed_frame(state, caster, device, effects, ours);
+    add_time(theirs, [&] { trace_alone(raw, directions); });
+  }
+  const double rays = static_cast<double>(directions.size() * state.iterations());
+  state.counters["rays_per_second"] = rays / ours.wall_s;
+  state.counters["raw_per_second"] = rays / theirs.wall_s;
+  state.counters["of_raw"] = theirs.wall_s / ours.wall_s;
+  state.counters["of_raw_cpu"] = theirs.cpu_s / ours.cpu_s;
 }
-void phase_megapixel(benchmark::State& state) {
-  frame(state, phase_camera(1156, 3), 9.0 * 1156 * 867, sensor_effects);
+
+template <class Device>
+void frame(benchmark::State& state, const std::string& name, const Device& device, int triangles) {
+  const RayCaster caster(scene_of(triangles));
+  Times times;
+  double least_s = INFINITY;
+  for (auto _ : state)
+    least_s = std::min(least_s, timed_frame(state, caster, device, sensor_effects, times));
+  costs()[name][static_cast<double>(state.range(0))] = least_s;
+  state.counters["seconds"] = times.wall_s / static_cast<double>(state.iterations());
+  state.counters["peak_mib"] = peak_memory_mib();
 }
-void lidar_ten_million(benchmark::State& state) {
-  frame(state, lidar(3652), 3652.0 * 2739, sensor_effects);
+
+// Exponent of the cost by least squares.
+double exponent(const std::map<double, double>& seconds_of) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const auto& [size, seconds] : seconds_of) {
+    const double u = std::log(size), v = std::log(seconds);
+    ++n, x += u, y += v, xx += u * u, xy += u * v;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
 }
-void laser_sweep(benchmark::State& state) {
-  frame(state, laser(400), 400.0 * 640 * 480, sensor_effects);
+
+void print_exponents() {
+  for (const auto& [name, seconds_of] : costs())
+    if (seconds_of.size() > 1)
+      std::printf("%-22s cost ~ size^%.2f over %g to %g\n", name.c_str(), exponent(seconds_of),
+                  seconds_of.begin()->first, seconds_of.rbegin()->first);
 }
 
 constexpr int million = 1'000'000;
 
-[[maybe_unused]] const bool registered = [] {
-  const auto sizes = [](benchmark::internal::Benchmark* b) {
-    b->Arg(10'000)->Arg(100'000)->Arg(million)->UseRealTime()->Unit(benchmark::kMillisecond);
+// Columns of an image of 4 by 3 with about so many pixels.
+int columns_of(double pixels) {
+  return static_cast<int>(std::lround(std::sqrt(pixels / 0.75) / 4)) * 4;
+}
+
+template <class Run>
+void add(const char* name, const Run& run, std::initializer_list<int> sizes, int iterations = 0) {
+  auto* job = benchmark::RegisterBenchmark(name, run);
+  for (const int size : sizes) job->Arg(size);
+  if (iterations > 0) job->Iterations(iterations);
+  job->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+
+void add_ratios() {
+  using State = benchmark::State;
+  const auto sizes = {10'000, 100'000, million};
+  add(
+      "phase_frame", [](State& s) { frame_beside_raw(s, phase_camera(640, 1), sensor_effects); },
+      sizes);
+  add(
+      "phase_frame_without_noise", [](State& s) { frame_beside_raw(s, phase_camera(640, 1), {}); },
+      sizes);
+  add(
+      "lidar_scan", [](State& s) { frame_beside_raw(s, lidar(640), sensor_effects); }, sizes);
+  add(
+      "lidar_scan_without_noise", [](State& s) { frame_beside_raw(s, lidar(640), {}); }, sizes);
+}
+
+void add_scaling(bool full) {
+  using State = benchmark::State;
+  constexpr int triangles = 100'000;
+  for (const int rays : {10'000, 100'000, million, 10 * million}) {
+    if (rays > million && !full) continue;
+    add("phase_by_pixels",
+        [](State& s) {
+          const int columns = columns_of(static_cast<double>(s.range(0)));
+          frame(s, "phase_by_pixels", phase_camera(columns, 1), triangles);
+        },
+        {rays});
+    add("lidar_by_pulses",
+        [](State& s) {
+          const int columns = columns_of(static_cast<double>(s.range(0)));
+          frame(s, "lidar_by_pulses", lidar(columns), triangles);
+        },
+        {rays});
+  }
+  add("laser_by_steps",
+      [](State& s) { frame(s, "laser_by_steps", laser(static_cast<int>(s.range(0))), triangles); },
+      {2, 8, 32});
+  const auto sizes = {1000, 10'000, 100'000, million};
+  const auto by_triangles = [&](const char* name, const auto& device) {
+    add(
+        name, [device, name](State& s) { frame(s, name, device, static_cast<int>(s.range(0))); },
+        sizes);
   };
-  sizes(benchmark::RegisterBenchmark("embree_alone", embree_alone));
-  sizes(benchmark::RegisterBenchmark("phase_frame", phase_frame));
-  sizes(benchmark::RegisterBenchmark("phase_frame_without_noise", phase_frame_without_noise));
-  sizes(benchmark::RegisterBenchmark("lidar_scan", lidar_scan));
-  sizes(benchmark::RegisterBenchmark("lidar_scan_without_noise", lidar_scan_without_noise));
-  sizes(benchmark::RegisterBenchmark("laser_steps", laser_steps));
-  if (!std::getenv("LIBSCAN_BENCHMARK_FULL")) return true;
-  for (auto* job : {benchmark::RegisterBenchmark("phase_megapixel", phase_megapixel),
-                    benchmark::RegisterBenchmark("lidar_ten_million", lidar_ten_million),
-                    benchmark::RegisterBenchmark("laser_sweep", laser_sweep)})
-    job->Arg(million)->Iterations(1)->UseRealTime()->Unit(benchmark::kMillisecond);
-  return true;
-}();
+  by_triangles("phase_by_triangles", phase_camera(640, 1));
+  by_triangles("lidar_by_triangles", lidar(640));
+  by_triangles("laser_by_triangles", laser(8));
+}
+
+void add_large_jobs() {
+  using State = benchmark::State;
+  add(
+      "phase_megapixel",
+      [](State& s) { frame(s, "phase_megapixel", phase_camera(1156, 3), million); }, {million}, 1);
+  add(
+      "lidar_ten_million", [](State& s) { frame(s, "lidar_ten_million", lidar(3652), million); },
+      {million}, 1);
+  add(
+      "laser_sweep", [](State& s) { frame(s, "laser_sweep", laser(400), million); }, {million}, 1);
+}
 
 }  // namespace
 }  // namespace scan::synth
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  const bool full = std::getenv("LIBSCAN_BENCHMARK_FULL") != nullptr;
+  scan::synth::add_ratios();
+  scan::synth::add_scaling(full);
+  if (full) scan::synth::add_large_jobs();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  scan::synth::print_exponents();
+}

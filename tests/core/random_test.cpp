@@ -10,9 +10,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
+#include <utility>
 #include <vector>
+
+#include "tests/core/chi_square.h"
 
 namespace scan {
 namespace {
@@ -27,27 +29,6 @@ TEST(Philox, GivesThePublishedBlocks) {
             (Block{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
   EXPECT_EQ(philox4x32({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}),
             (Block{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
-}
-
-// Deviation of chi-square from its mean in standard deviations of a normal variable (Wilson and
-// Hilferty 1931): above 4.75 with probability 1e-6.
-double chi_square_score(const std::vector<double>& observed, const std::vector<double>& expected) {
-  double chi2 = 0;
-  for (std::size_t i = 0; i < observed.size(); ++i)
-    chi2 += (observed[i] - expected[i]) * (observed[i] - expected[i]) / expected[i];
-  const double freedom = static_cast<double>(observed.size()) - 1;
-  const double spread = 2 / (9 * freedom);
-  return (std::cbrt(chi2 / freedom) - (1 - spread)) / std::sqrt(spread);
-}
-constexpr double one_in_a_million = 4.75;
-
-// Score of values that should be uniform in [0, 1).
-double uniformity_score(const std::function<double()>& draw) {
-  constexpr std::size_t bins = 200, count = 400'000;
-  std::vector<double> observed(bins, 0), expected(bins, static_cast<double>(count) / bins);
-  for (std::size_t i = 0; i < count; ++i)
-    observed[std::min<std::size_t>(static_cast<std::size_t>(draw() * bins), bins - 1)] += 1;
-  return chi_square_score(observed, expected);
 }
 
 TEST(ChiSquareScore, SeesATiltOfOnePerCent) {
@@ -123,6 +104,12 @@ TEST(RandomStream, NeighbouringAddressesAreUncorrelated) {
   EXPECT_LT(neighbour_score(std::uint64_t{1} << 32, 0, 0), 5);
   EXPECT_LT(neighbour_score(0, 0, std::uint64_t{1} << 32), 5);
   EXPECT_GT(neighbour_score(0, 0, 0), 5);  // the same address: the score sees it
+}
+
+TEST(RandomStream, BeginsAtTheBlockThatIsAskedFor) {
+  RandomStream whole(9, 8, 7), later(9, 8, 7, 5);
+  for (int i = 0; i < 4 * 5; ++i) whole.bits32();
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(later.bits32(), whole.bits32());
 }
 
 TEST(RandomStream, SameAddressGivesSameStream) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "synth/scanners/phase_light.h"
 
+#include <cstring>
+
 #include "tests/synth/phase_bench.h"
 
 namespace scan::synth {
@@ -120,6 +122,73 @@ TEST(PhaseLight, ReflectsAsTheSurfacesBsdfSays) {
   EXPECT_GT(electrons, 0);
   EXPECT_NEAR(std::abs(light.amplitude_e[0]), 0.5 * electrons, 1e-9 * electrons);
   EXPECT_NEAR(light.constant_e, electrons + 100 * albedo(metal, out), 1e-9 * electrons);
+}
+
+// The same view two ways: by the camera model, ray by ray, and by the kernel.
+TEST(PhaseLight, SeesThroughAPinholeAsThroughAnyLens) {
+  PhaseCamera camera = one_pixel();
+  camera.camera = {640, 480, 500, 510, 320.3, 239.1};
+  camera.vignetting = 0.7;
+  ASSERT_TRUE(is_pinhole(camera));
+  const Pose world_from_scanner = make_pose(
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(), {4, 5, 6});
+  ViewBatch one_by_one, together;
+  for (std::size_t i = 0; i < ViewBatch::most; ++i) {
+    const Eigen::Vector2d place(9.7 * static_cast<double>(i), 480 - 7.1 * static_cast<double>(i));
+    one_by_one.add(world_from_scanner, *lens_ray(camera, place, {0, 0}), i);
+    together.add(place, i);
+  }
+  together.aim(camera, world_from_scanner);
+  for (std::size_t i = 0; i < ViewBatch::most; ++i) {
+    const LensRay &a = one_by_one.view(i), &b = together.view(i);
+    EXPECT_LT((a.ray.direction - b.ray.direction).norm(), 1e-15);
+    EXPECT_LT((one_by_one.direction_in_world(i) - together.direction_in_world(i)).norm(), 1e-15);
+    EXPECT_EQ(b.ray.origin, Eigen::Vector3d::Zero());
+    EXPECT_NEAR(a.share, b.share, 1e-15);
+    EXPECT_EQ(together.owner(i), i);
+  }
+  camera.camera.k1 = 0.01;
+  EXPECT_FALSE(is_pinhole(camera));
+  camera.camera.k1 = 0;
+  camera.aperture_m = 0.01;
+  EXPECT_FALSE(is_pinhole(camera));
+}
+
+TEST(PinholeRays, AreTheSameBytesByEveryKernel) {
+  const Pinhole pinhole{500, 510, 320, 240, 0.3, {{0.8, 0.6, 0}, {-0.6, 0.8, 0}, {0, 0, 1}}};
+  PinholeRays plain;
+  for (std::size_t i = 0; i < PinholeRays::most; ++i) {
+    plain.column_px[i] = 9.3 * static_cast<double>(i);
+    plain.row_px[i] = 100 + 3.1 * static_cast<double>(i);
+  }
+  PinholeRays other = plain;
+  pinhole_kernels().front()(pinhole, PinholeRays::most, plain);
+  for (PinholeKernel* const kernel : pinhole_kernels()) {
+    kernel(pinhole, PinholeRays::most, other);
+    EXPECT_EQ(std::memcmp(&plain, &other, sizeof plain), 0);
+  }
+}
+
+// Every pixel once, from wherever the walk begins, and sixteen in a row are a square.
+TEST(TileWalk, MeetsEachPixelOnce) {
+  for (const auto& [width, height] : {std::pair(16, 8), {7, 9}, {3, 2}, {1, 5}, {21, 4}}) {
+    const auto pixels = static_cast<std::size_t>(width * height);
+    std::vector<int> visits(pixels, 0);
+    TileWalk walk(0, width, height);
+    for (std::size_t i = 0; i < pixels; ++i, walk.next()) {
+      const PixelPlace place = walk.place();
+      ASSERT_LT(place.column, width);
+      ASSERT_LT(place.row, height);
+      ++visits[index_of(place, width)];
+      const PixelPlace anew = TileWalk(i, width, height).place();
+      ASSERT_EQ(index_of(anew, width), index_of(place, width)) << i;
+      if (width == 16) {
+        ASSERT_EQ(place.column / 4, static_cast<int>(i / 16 % 4));
+        ASSERT_EQ(place.row / 4, static_cast<int>(i / 64));
+      }
+    }
+    for (const int count : visits) EXPECT_EQ(count, 1);
+  }
 }
 
 }  // namespace

@@ -34,6 +34,13 @@ void expect_same_distribution(const Histogram& a, const Histogram& b) {
   EXPECT_LT(chi_square, cells + 5 * std::sqrt(2 * cells) + 5);
 }
 
+void draw(const ReadingTable& table, std::span<std::uint16_t> readings) {
+  RandomStream random(3, 0, 0), more(3, 0, 1);
+  std::vector<std::uint32_t> words(table.words_for(readings.size()));
+  for (std::uint32_t& word : words) word = random.bits32();
+  table.draw(words, more, readings);
+}
+
 const DetectorEffects effects_list[] = {
     {true, true, true}, {true, true, false}, {true, false, true}, {false, true, true}};
 
@@ -59,9 +66,8 @@ TEST(ReadingTable, DrawsWhatTheDetectorReads) {
 TEST(ReadingTable, KeepsItsTail) {
   const ReadingTable table({.gain_e_per_dn = 1}, {true, false, true}, 0.05);
   int rare = 0;
-  RandomStream random(3, 0, 0);
   std::vector<std::uint16_t> readings(4'000'000);
-  table.draw(random, readings);
+  draw(table, readings);
   for (const std::uint16_t dn : readings) rare += dn >= 3;
   const double share = std::exp(-0.05) * std::pow(0.05, 3) / 6 * (1 + 0.05 / 4);
   EXPECT_NEAR(rare, 4e6 * share, 4 * std::sqrt(4e6 * share));
@@ -83,9 +89,8 @@ TEST(ReadingTable, IsRightBeyondThirtyTwoBits) {
 
 TEST(ReadingTable, IsConstantWithoutNoise) {
   const ReadingTable table({.gain_e_per_dn = 2, .offset_dn = 10}, {false, false, true}, 7);
-  RandomStream random(3, 0, 0);
   std::vector<std::uint16_t> readings(100);
-  table.draw(random, readings);
+  draw(table, readings);
   for (const std::uint16_t dn : readings) EXPECT_EQ(dn, 14);  // 3.5 + 10 rounds away from zero
 }
 
