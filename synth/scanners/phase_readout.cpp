@@ -6,11 +6,12 @@
 #include <cmath>
 
 #include "libscan/core/parallel.h"
+#include "synth/scanners/phase_shared.h"
 
 namespace scan::synth {
 namespace {
 
-constexpr int band_rows = 32;  // whose light is kept at a time, near the processor
+constexpr int band_rows = patch_tile_px;  // whose light is kept at a time, near the processor
 
 // What miscalibration adds to the distance of a pixel. The fixed pattern belongs to the device: it
 // is the same for all scans.
@@ -52,22 +53,106 @@ void read_light(const Readout& r, std::span<const Tone> tones, std::size_t pixel
   });
 }
 
-// Calls read(pixel, light) for every pixel with its direct light.
+// The bands of rows whose light is kept at a time.
+int band_count(const Readout& r) {
+  return (r.scanner.camera.height_px + band_rows - 1) / band_rows;
+}
+
+// Calls read(band, first_pixel, light) for every band of rows with its direct light.
 template <class Read>
 void for_direct_light(const Readout& r, std::span<const Tone> tones, Read&& read) {
   const Camera& camera = r.scanner.camera;
-  const int bands = (camera.height_px + band_rows - 1) / band_rows;
   parallel_for(
-      static_cast<std::size_t>(bands),
+      static_cast<std::size_t>(band_count(r)),
       [&](std::size_t band) {
         const int begin = static_cast<int>(band) * band_rows;
         const int end = std::min(camera.height_px, begin + band_rows);
         LightImage light =
             direct_light(r.scanner, tones, r.caster, r.world_from_scanner, {begin, end});
-        const std::size_t first = static_cast<std::size_t>(begin) * camera.width_px;
-        parallel_for(light.constant_e.size(), [&](std::size_t i) { read(first + i, light.at(i)); });
+        read(band, static_cast<std::size_t>(begin) * camera.width_px, light);
       },
       1);
+}
+
+// The patches of a band of rows, among pixels that are wanted.
+std::vector<Patch> patches_of_band(const PathView& view, int band,
+                                   const std::vector<char>& wanted) {
+  const int width = view.scanner.camera.width_px;
+  const int tiles = (width + patch_tile_px - 1) / patch_tile_px;
+  std::vector<std::vector<Patch>> of_tile(static_cast<std::size_t>(tiles));
+  parallel_for(
+      of_tile.size(),
+      [&](std::size_t tile) {
+        const PixelPlace first{static_cast<int>(tile) * patch_tile_px, band * band_rows};
+        of_tile[tile] = patches_of(view, first, [&](const PixelPlace& place) {
+          return wanted[index_of(place, width)] != 0;
+        });
+      },
+      1);
+  std::vector<Patch> all;
+  for (auto& patches : of_tile) std::move(patches.begin(), patches.end(), std::back_inserter(all));
+  return all;
+}
+
+// Adds the indirect light that neighbours share to a band's direct light. `wanted` keeps the pixels
+// that it leaves out.
+SamplingError add_shared_light(const Readout& r, const PathView& view, std::span<const Tone> tones,
+                               int band, LightImage& light, std::vector<char>& wanted) {
+  const int width = r.scanner.camera.width_px;
+  const std::size_t first = static_cast<std::size_t>(band) * band_rows * width;
+  const std::vector<Patch> patches = patches_of_band(view, band, wanted);
+  std::vector<std::vector<SharedPixel>> shared(patches.size());
+  const auto ray = [&](const PixelPlace& place) { return ray_address(r, index_of(place, width)); };
+  const auto light_of = [&](const PixelPlace& place) {
+    return light.at(index_of(place, width) - first);
+  };
+  parallel_for(
+      patches.size(),
+      [&](std::size_t i) { shared[i] = add_shared_light(view, tones, patches[i], ray, light_of); },
+      1);
+  SamplingError sum;
+  for (const auto& pixels : shared)
+    for (const auto& [place, taps] : pixels) {
+      wanted[index_of(place, width)] = 0;
+      sum.add(r.scanner.sensor, taps);
+    }
+  return sum;
+}
+
+// Reads all pixels but those that want paths of their own, which are left in `wanted`.
+SamplingError read_shared_light(const Readout& r, const PathView& view, std::span<const Tone> tones,
+                                std::vector<char>& wanted) {
+  std::vector<SamplingError> errors(static_cast<std::size_t>(band_count(r)));
+  for_direct_light(r, tones, [&](std::size_t band, std::size_t first, LightImage& light) {
+    if (r.scanner.aperture_m == 0)  // else blur mixes surfaces
+      errors[band] = add_shared_light(r, view, tones, static_cast<int>(band), light, wanted);
+    parallel_for(light.constant_e.size(), [&](std::size_t i) {
+      if (!wanted[first + i]) read_light(r, tones, first + i, light.at(i));
+    });
+  });
+  SamplingError sum;
+  for (const SamplingError& error : errors) sum += error;
+  return sum;
+}
+
+SamplingError read_own_paths(const Readout& r, const PathView& view, std::span<const Tone> tones,
+                             const std::vector<char>& wanted) {
+  // enough for each stream to meet its share of bright paths before it may stop
+  const SamplingGoal goal{.least_samples = 64};
+  return ordered_sum(wanted.size(), 64, SamplingError{}, [&](std::size_t begin, std::size_t end) {
+    SamplingError sum;
+    EstimateMemory memory;
+    Estimate taps;
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      if (!wanted[pixel]) continue;
+      estimate_taps(view, tones, place_of(pixel, r.scanner.camera.width_px), ray_address(r, pixel),
+                    offset_m(r.scanner, r.address, pixel), goal, memory, taps);
+      sum.add(r.scanner.sensor, taps);
+      const bool all = r.exposure.frequency < 0;
+      read_pixel_taps(r, pixel, [&](int f, int k) { return taps.mean[all ? 4 * f + k : 0]; });
+    }
+    return sum;
+  });
 }
 
 }  // namespace
@@ -100,37 +185,23 @@ RenderStatistics SamplingError::statistics() const {
 
 void read_direct_light(const Readout& r) {
   const std::vector<Tone> tones = tones_of(r.scanner, r.exposure);
-  for_direct_light(r, tones, [&](std::size_t pixel, const LightSum& light) {
-    read_light(r, tones, pixel, light);
+  for_direct_light(r, tones, [&](std::size_t, std::size_t first, LightImage& light) {
+    parallel_for(light.constant_e.size(),
+                 [&](std::size_t i) { read_light(r, tones, first + i, light.at(i)); });
   });
 }
 
 SamplingError read_by_paths(const Readout& r, const LightTransport& transport, PathNeed need) {
   const std::vector<Tone> tones = tones_of(r.scanner, r.exposure);
   const PathView view{r.scanner, transport, r.world_from_scanner, r.exposure, r.address};
-  std::vector<char> by_paths(r.frames.taps[0][0].pixels.size(), 1);
+  std::vector<char> by_own_paths(r.frames.taps[0][0].pixels.size(), 1);
+  SamplingError error;
   if (need == PathNeed::interreflection) {
-    by_paths = surroundings_matter(view, tones);
-    for_direct_light(r, tones, [&](std::size_t pixel, const LightSum& light) {
-      if (!by_paths[pixel]) read_light(r, tones, pixel, light);
-    });
+    by_own_paths = surroundings_matter(view, tones);
+    error = read_shared_light(r, view, tones, by_own_paths);
   }
-  // enough for each stream to meet its share of bright paths before it may stop
-  const SamplingGoal goal{.least_samples = 64};
-  return ordered_sum(by_paths.size(), 64, SamplingError{}, [&](std::size_t begin, std::size_t end) {
-    SamplingError sum;
-    EstimateMemory memory;
-    Estimate taps;
-    for (std::size_t pixel = begin; pixel < end; ++pixel) {
-      if (!by_paths[pixel]) continue;
-      estimate_taps(view, tones, place_of(pixel, r.scanner.camera.width_px), ray_address(r, pixel),
-                    offset_m(r.scanner, r.address, pixel), goal, memory, taps);
-      sum.add(r.scanner.sensor, taps);
-      const bool all = r.exposure.frequency < 0;
-      read_pixel_taps(r, pixel, [&](int f, int k) { return taps.mean[all ? 4 * f + k : 0]; });
-    }
-    return sum;
-  });
+  error += read_own_paths(r, view, tones, by_own_paths);
+  return error;
 }
 
 }  // namespace scan::synth

@@ -18,6 +18,11 @@ inline PixelPlace place_of(std::size_t pixel, int width_px) {
   return {static_cast<int>(pixel % width), static_cast<int>(pixel / width)};
 }
 
+inline std::size_t index_of(const PixelPlace& place, int width_px) {
+  return static_cast<std::size_t>(place.row) * static_cast<std::size_t>(width_px) +
+         static_cast<std::size_t>(place.column);
+}
+
 // Ray i of per_side^2 that sample a pixel's area: the centres of its equal squares, row by row.
 inline Eigen::Vector2d sub_pixel(const PixelPlace& pixel, int i, int per_side) {
   const int across = i % per_side, down = i / per_side;
