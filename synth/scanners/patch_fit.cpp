@@ -58,16 +58,14 @@ PatchBasis patch_basis(std::span<const PatchPlace> places) {
     for (int power = 0; power <= degree; ++power) columns.add(u.pow(degree - power) * v.pow(power));
   };
   PatchBasis basis;
-  add_degree(0);
-  add_degree(1);
-  basis.count.push_back(columns.size());
-  add_degree(2);
-  columns.add(normal * across);
-  columns.add(normal * mean.cross(across));
-  basis.count.push_back(columns.size());
-  for (int degree = 3; degree <= most_degree && 3 * (columns.size() + degree + 1) <= count;
-       ++degree) {
+  for (int degree = 0; degree <= most_degree; ++degree) {
+    const Eigen::Index more = degree + 1 + (degree == 2 ? 2 : 0);
+    if (degree > 1 && 3 * (columns.size() + more) > count) break;
     add_degree(degree);
+    if (degree == 2) {
+      columns.add(normal * across);
+      columns.add(normal * mean.cross(across));
+    }
     basis.count.push_back(columns.size());
   }
   basis.functions = columns.matrix();

@@ -21,9 +21,9 @@ struct PatchPlace {
 // out: a strip has fewer polynomials, a plane no lean.
 struct PatchBasis {
   Eigen::MatrixXd functions;        // one row per pixel, one column per function
-  std::vector<Eigen::Index> count;  // of functions up to degree 1, 2, ...
+  std::vector<Eigen::Index> count;  // of functions up to degree 0, 1, ...
 };
-// At least to degree 2, for the rest as high, to 6, as leaves three pixels to a function.
+// At least to degree 1, for the rest as high, to 6, as leaves three pixels to a function.
 PatchBasis patch_basis(std::span<const PatchPlace> places);
 
 inline constexpr int patch_streams = 4;  // of independent values at each pixel

@@ -48,7 +48,7 @@ struct Misfit {
   // Whether more paths make it hardly better: what is missed is beyond chance and half of the goal.
   bool is_stiff(double goal) const;
 };
-// Of fits up to degree 2, 3, ...
+// Of fits up to degree 1, 2, ...
 std::vector<Misfit> misfits_of(const PatchReadings& readings, std::span<const PatchPixel> pixels,
                                const PatchFit& fit);
 

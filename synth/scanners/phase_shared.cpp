@@ -11,7 +11,7 @@ namespace {
 constexpr double goal = 0.2 * 0.2;  // square of the error over the noise: see SamplingGoal
 constexpr int least_paths = 1024, most_per_pixel = 4096;
 constexpr int least_side_px = 8;
-constexpr std::size_t least_pixels = 24;                         // for at most eight functions
+constexpr std::size_t least_pixels = 9;                          // for three functions
 constexpr std::uint64_t patch_address = std::uint64_t{1} << 41;  // beyond all pixels and pilots
 
 // A part of a patch that is fitted as a whole.

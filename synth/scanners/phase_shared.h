@@ -28,7 +28,7 @@ struct SharedPixel {
 };
 
 // Adds indirect light to the direct light of the patch's pixels. Left out are parts of fewer than
-// 24 pixels, for which paths of their own are as well.
+// 9 pixels, for which paths of their own are as well.
 std::vector<SharedPixel> add_shared_light(const PathView& view, std::span<const Tone> tones,
                                           const Patch& patch, const RayOf& ray,
                                           const LightOf& light_of);

@@ -69,13 +69,13 @@ TEST_F(PatchMisfit, IsNotStiffByChance) {
     EXPECT_FALSE(misfits(fit(plain_light, deviation_e)).back().is_stiff(goal)) << deviation_e;
 }
 
-// The variance of a fit of p functions to n pixels is p / n of a pixel's; here 6 to 28 of 256 and
+// The variance of a fit of p functions to n pixels is p / n of a pixel's; here 3 to 28 of 256 and
 // four streams. The square of p deviations of three degrees of freedom each scatters by
 // sqrt(2 / 3p); four times that.
 TEST_F(PatchMisfit, CountsChanceByTheFunctions) {
   const std::vector<Misfit> all = misfits(fit([](double) { return 0; }, 1000));
   const double unit_e2 = 2.5 * 2.5 * tap_variance_e2(camera_.sensor, 10000);
-  const double counts[] = {6, 10, 15, 21, 28};
+  const double counts[] = {3, 6, 10, 15, 21, 28};
   for (std::size_t d = 0; d < all.size(); ++d)
     EXPECT_NEAR(all[d].chance[0] * unit_e2, counts[d] / 256 * 1e6 / 4,
                 4 * std::sqrt(2 / (3 * counts[d])) * counts[d] / 256 * 1e6 / 4);
@@ -90,8 +90,8 @@ TEST_F(PatchMisfit, IsWhatTheLastDegreeAdds) {
   for (int i = 0; i < 16; ++i) x[i] = (i - 7.5) / 7.5;
   const double slope = x.pow(4).sum() / x.square().sum();
   const double square = 9000.0 * 9000 * (x.cube() - slope * x).square().mean();
-  EXPECT_NEAR(all[1].last[0] * unit_e2, square, 0.1 * square);
-  EXPECT_NEAR(all[2].last[0] * unit_e2, 0, 1e-6 * square);
+  EXPECT_NEAR(all[2].last[0] * unit_e2, square, 0.1 * square);
+  EXPECT_NEAR(all[3].last[0] * unit_e2, 0, 1e-6 * square);
 }
 
 // By hand, one reading: beyond half of the goal, beyond chance and by four times its own.
