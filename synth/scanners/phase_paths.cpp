@@ -16,11 +16,6 @@ constexpr int tile_px = 8;
 constexpr int pilot_paths = 64;
 constexpr std::uint64_t pilot_address = std::uint64_t{1} << 40;  // beyond all pixels and exposures
 
-Ray in_world(const Pose& world_from_scanner, const ScannerRay& ray) {
-  return {.origin = world_from_scanner * ray.origin,
-          .direction = world_from_scanner.linear() * ray.direction};
-}
-
 // Turns the light of one path into readings of the exposure's taps.
 struct TapReceiver {
   const PhaseCamera& scanner;
@@ -48,17 +43,6 @@ struct TapReceiver {
     for (double& tap : taps) tap += electrons;
   }
 };
-
-// A view drawn from the pixel and the lens. Numbers are drawn whether they are needed or not, so
-// that an effect does not change the numbers of the others.
-std::optional<LensRay> draw_view(const PhaseCamera& s, const PixelPlace& pixel,
-                                 SampleSequence& random) {
-  const Eigen::Vector2d in_pixel = random.next_2d();
-  const Eigen::Vector2d lens = to_disk(random.next_2d());
-  const Eigen::Vector2d centre(pixel.column, pixel.row);
-  const Eigen::Vector2d half(0.5, 0.5);
-  return lens_ray(s, s.sub_rays > 1 ? Eigen::Vector2d(centre + in_pixel - half) : centre, lens);
-}
 
 // The paths of one pixel.
 struct PixelPaths {
@@ -170,6 +154,20 @@ PathNeed path_need(const PhaseCamera& s, const Scene& scene, const EffectSet& ef
       (effects.has(Effect::scene_lights) && !scene.lights.empty() && s.electrons_per_w_m2 > 0);
   if (all) return PathNeed::all;
   return effects.has(Effect::interreflection) ? PathNeed::interreflection : PathNeed::none;
+}
+
+Ray in_world(const Pose& world_from_scanner, const ScannerRay& ray) {
+  return {.origin = world_from_scanner * ray.origin,
+          .direction = world_from_scanner.linear() * ray.direction};
+}
+
+std::optional<LensRay> draw_view(const PhaseCamera& s, const PixelPlace& pixel,
+                                 SampleSequence& random) {
+  const Eigen::Vector2d in_pixel = random.next_2d();
+  const Eigen::Vector2d lens = to_disk(random.next_2d());
+  const Eigen::Vector2d centre(pixel.column, pixel.row);
+  const Eigen::Vector2d half(0.5, 0.5);
+  return lens_ray(s, s.sub_rays > 1 ? Eigen::Vector2d(centre + in_pixel - half) : centre, lens);
 }
 
 EmittedRay Flash::sample(const Eigen::Vector2d& u) const {

@@ -45,6 +45,14 @@ struct PathView {
   RenderAddress address;
 };
 
+Ray in_world(const Pose& world_from_scanner, const ScannerRay& ray);
+
+// A view drawn from the pixel and the lens; none where the camera model has no ray. Numbers are
+// drawn whether they are needed or not, so that an effect does not change the numbers of the
+// others.
+std::optional<LensRay> draw_view(const PhaseCamera& scanner, const PixelPlace& pixel,
+                                 SampleSequence& random);
+
 // Mean electrons of the exposure's taps of one pixel: those of all frequencies, four each, or the
 // one. `ray` addresses their chance; `offset_m` is added to all distances. The goal is for the
 // phasors' turns, which ranges follow; with four taps from the same paths their common brightness

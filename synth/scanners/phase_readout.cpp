@@ -6,25 +6,14 @@
 #include <cmath>
 
 #include "libscan/core/parallel.h"
-#include "libscan/core/random_blocks.h"
-#include "synth/block_detector.h"
+#include "synth/scanners/phase_shared.h"
+#include "synth/scanners/phase_tap_reader.h"
 
 namespace scan::synth {
 namespace {
 
-constexpr int band_rows = 32;  // whose light is kept at a time, near the processor
-
-// What miscalibration adds to the distance of a pixel. The fixed pattern belongs to the device: it
-// is the same for all scans.
-double offset_m(const PhaseCamera& s, const RenderAddress& address, std::size_t pixel) {
-  constexpr std::uint32_t no_scan = 0xffffffff;
-  if (s.pixel_offset_m == 0) return s.range_offset_m;
-  return s.range_offset_m + s.pixel_offset_m * RandomStream(address.seed, no_scan, pixel).normal();
-}
-
-std::uint64_t ray_address(const Readout& r, std::size_t pixel) {
-  return r.index * r.frames.taps[0][0].pixels.size() + pixel;
-}
+constexpr int band_rows = patch_tile_px;  // whose light is kept at a time, near the processor
+constexpr std::size_t pixels_at_once = 64;
 
 // mean_e(frequency, tap): expected electrons.
 template <class Mean>
@@ -39,112 +28,116 @@ void read_pixel_taps(const Readout& r, std::size_t pixel, Mean&& mean_e) {
     for (int k = 0; k < 4; ++k) read(f, k);
 }
 
-constexpr std::size_t pixels_at_once = 64;
-constexpr std::size_t per_block = 4;  // numbers of a stream
-// Where a pixel's stream has the tap i that is read by itself: i times as many blocks later as a
-// reading can need.
-constexpr std::uint32_t alone_block = 1u << 31, blocks_alone = 256;
+// The bands of rows whose light is kept at a time.
+int band_count(const Readout& r) {
+  return (r.scanner.camera.height_px + band_rows - 1) / band_rows;
+}
 
-// Reads the taps of some pixels by their light, each frequency by one block of its pixel's stream.
-class TapReader {
- public:
-  TapReader(const Readout& readout, std::span<const Tone> tones)
-      : r_(readout), tones_(tones), detector_(readout.scanner.sensor, readout.reading) {
-    const Exposure& exposed = readout.exposure;
-    for (int f = 0; f < static_cast<int>(readout.frames.taps.size()); ++f)
-      for (int k = 0; k < 4; ++k)
-        if (all() || (f == exposed.frequency && k == exposed.tap))
-          taps_.push_back(readout.frames.taps[f][k].pixels.data());
-  }
-
-  // light_of(k) of pixels[k].
-  template <class LightOf>
-  void read(std::span<const std::size_t> pixels, LightOf&& light_of) const {
-    Memory memory;
-    const std::size_t blocks = pixels.size() * frequencies();
-    memory.expected_e.assign(blocks * per_block, 0.0);
-    for (std::size_t k = 0; k < pixels.size(); ++k) {
-      const std::size_t first = k * frequencies() * per_block;
-      expect(pixels[k], light_of(k),
-             std::span(memory.expected_e).subspan(first, frequencies() * per_block));
-      for (std::size_t f = 0; f < frequencies(); ++f)
-        memory.blocks.push_back({ray_address(r_, pixels[k]), f});
-    }
-    detect(memory);
-    for (std::size_t k = 0; k < pixels.size(); ++k) deliver(memory, k, pixels[k]);
-  }
-
- private:
-  struct Memory {
-    std::vector<BlockAddress> blocks;
-    std::vector<double> expected_e, normals;
-    std::vector<std::uint16_t> readings;
-  };
-
-  bool all() const { return r_.exposure.frequency < 0; }
-  std::size_t frequencies() const { return all() ? r_.frames.taps.size() : 1; }
-
-  void expect(std::size_t pixel, const LightSum& light, std::span<double> expected_e) const {
-    const double moved_m = 2 * offset_m(r_.scanner, r_.address, pixel);
-    for (double& e : expected_e) e = light.constant_e;
-    for (std::size_t t = 0; t < tones_.size(); ++t) {
-      const Tone& tone = tones_[t];
-      std::complex<double> amplitude_e = light.amplitude_e[t];
-      if (moved_m != 0) amplitude_e *= std::polar(1.0, tone.rad_per_m * moved_m);
-      double* const taps_e = &expected_e[all() ? tone.frequency * per_block : 0];
-      if (!all()) taps_e[0] += modulation(amplitude_e, tone.harmonic, r_.exposure.tap);
-      for (int k = 0; all() && k < 4; ++k) taps_e[k] += modulation(amplitude_e, tone.harmonic, k);
-    }
-  }
-
-  void detect(Memory& memory) const {
-    memory.readings.resize(memory.expected_e.size());
-    if (detector_.needs_normals()) {
-      memory.normals.resize(memory.expected_e.size());
-      draw_normals(r_.address.seed, r_.address.scan, memory.blocks, memory.normals);
-    }
-    detector_.read(memory.expected_e, memory.normals, memory.readings, [&](std::size_t i) {
-      const auto& [ray, block] = memory.blocks[i / per_block];
-      const auto tap = static_cast<std::uint32_t>(per_block * block + i % per_block);
-      RandomStream random(r_.address.seed, r_.address.scan, ray, alone_block + blocks_alone * tap);
-      return read_pixel(r_.scanner.sensor, r_.reading, std::max(0.0, memory.expected_e[i]), random);
-    });
-  }
-
-  void deliver(const Memory& memory, std::size_t k, std::size_t pixel) const {
-    const std::uint16_t* reading = &memory.readings[k * frequencies() * per_block];
-    for (std::uint16_t* const tap : taps_) tap[pixel] = *reading++;
-  }
-
-  const Readout& r_;
-  std::span<const Tone> tones_;
-  BlockDetector detector_;
-  std::vector<std::uint16_t*> taps_;  // that are exposed
-};
-
-// Reads the pixels that are wanted by their direct light.
-template <class Wanted>
-void read_by_direct_light(const Readout& r, std::span<const Tone> tones, Wanted&& wanted) {
+// Calls read(band, first_pixel, light) for every band of rows with its direct light.
+template <class Read>
+void for_direct_light(const Readout& r, std::span<const Tone> tones, Read&& read) {
   const Camera& camera = r.scanner.camera;
-  const TapReader reader(r, tones);
-  const int bands = (camera.height_px + band_rows - 1) / band_rows;
   parallel_for(
-      static_cast<std::size_t>(bands),
+      static_cast<std::size_t>(band_count(r)),
       [&](std::size_t band) {
         const int begin = static_cast<int>(band) * band_rows;
         const int end = std::min(camera.height_px, begin + band_rows);
         LightImage light =
             direct_light(r.scanner, tones, r.caster, r.world_from_scanner, {begin, end});
-        const std::size_t first = static_cast<std::size_t>(begin) * camera.width_px;
-        parallel_chunks(
-            light.constant_e.size(), pixels_at_once, [&](std::size_t from, std::size_t to) {
-              std::vector<std::size_t> pixels;
-              for (std::size_t i = from; i < to; ++i)
-                if (wanted(first + i)) pixels.push_back(first + i);
-              reader.read(pixels, [&](std::size_t k) { return light.at(pixels[k] - first); });
-            });
+        read(band, static_cast<std::size_t>(begin) * camera.width_px, light);
       },
       1);
+}
+
+// Reads those pixels of a band that are wanted by its light.
+template <class Wanted>
+void read_band(const TapReader& reader, std::size_t first, LightImage& light, Wanted&& wanted) {
+  parallel_chunks(light.constant_e.size(), pixels_at_once, [&](std::size_t from, std::size_t to) {
+    std::vector<std::size_t> pixels;
+    for (std::size_t i = from; i < to; ++i)
+      if (wanted(first + i)) pixels.push_back(first + i);
+    reader.read(pixels, [&](std::size_t k) { return light.at(pixels[k] - first); });
+  });
+}
+
+// The patches of a band of rows, among pixels that are wanted.
+std::vector<Patch> patches_of_band(const PathView& view, int band,
+                                   const std::vector<char>& wanted) {
+  const int width = view.scanner.camera.width_px;
+  const int tiles = (width + patch_tile_px - 1) / patch_tile_px;
+  std::vector<std::vector<Patch>> of_tile(static_cast<std::size_t>(tiles));
+  parallel_for(
+      of_tile.size(),
+      [&](std::size_t tile) {
+        const PixelPlace first{static_cast<int>(tile) * patch_tile_px, band * band_rows};
+        of_tile[tile] = patches_of(view, first, [&](const PixelPlace& place) {
+          return wanted[index_of(place, width)] != 0;
+        });
+      },
+      1);
+  std::vector<Patch> all;
+  for (auto& patches : of_tile) std::move(patches.begin(), patches.end(), std::back_inserter(all));
+  return all;
+}
+
+// Adds the indirect light that neighbours share to a band's direct light. `wanted` keeps the pixels
+// that it leaves out.
+SamplingError add_shared_light(const Readout& r, const PathView& view, std::span<const Tone> tones,
+                               int band, LightImage& light, std::vector<char>& wanted) {
+  const int width = r.scanner.camera.width_px;
+  const std::size_t first = static_cast<std::size_t>(band) * band_rows * width;
+  const std::vector<Patch> patches = patches_of_band(view, band, wanted);
+  std::vector<std::vector<SharedPixel>> shared(patches.size());
+  const auto ray = [&](const PixelPlace& place) { return ray_address(r, index_of(place, width)); };
+  const auto light_of = [&](const PixelPlace& place) {
+    return light.at(index_of(place, width) - first);
+  };
+  parallel_for(
+      patches.size(),
+      [&](std::size_t i) { shared[i] = add_shared_light(view, tones, patches[i], ray, light_of); },
+      1);
+  SamplingError sum;
+  for (const auto& pixels : shared)
+    for (const auto& [place, taps] : pixels) {
+      wanted[index_of(place, width)] = 0;
+      sum.add(r.scanner.sensor, taps);
+    }
+  return sum;
+}
+
+// Reads all pixels but those that want paths of their own, which are left in `wanted`.
+SamplingError read_shared_light(const Readout& r, const PathView& view, std::span<const Tone> tones,
+                                std::vector<char>& wanted) {
+  const TapReader reader(r, tones);
+  std::vector<SamplingError> errors(static_cast<std::size_t>(band_count(r)));
+  for_direct_light(r, tones, [&](std::size_t band, std::size_t first, LightImage& light) {
+    if (r.scanner.aperture_m == 0)  // else blur mixes surfaces
+      errors[band] = add_shared_light(r, view, tones, static_cast<int>(band), light, wanted);
+    read_band(reader, first, light, [&](std::size_t pixel) { return !wanted[pixel]; });
+  });
+  SamplingError sum;
+  for (const SamplingError& error : errors) sum += error;
+  return sum;
+}
+
+SamplingError read_own_paths(const Readout& r, const PathView& view, std::span<const Tone> tones,
+                             const std::vector<char>& wanted) {
+  // enough for each stream to meet its share of bright paths before it may stop
+  const SamplingGoal goal{.least_samples = 64};
+  return ordered_sum(wanted.size(), 64, SamplingError{}, [&](std::size_t begin, std::size_t end) {
+    SamplingError sum;
+    EstimateMemory memory;
+    Estimate taps;
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      if (!wanted[pixel]) continue;
+      estimate_taps(view, tones, place_of(pixel, r.scanner.camera.width_px), ray_address(r, pixel),
+                    offset_m(r.scanner, r.address, pixel), goal, memory, taps);
+      sum.add(r.scanner.sensor, taps);
+      const bool all = r.exposure.frequency < 0;
+      read_pixel_taps(r, pixel, [&](int f, int k) { return taps.mean[all ? 4 * f + k : 0]; });
+    }
+    return sum;
+  });
 }
 
 }  // namespace
@@ -177,33 +170,23 @@ RenderStatistics SamplingError::statistics() const {
 
 void read_direct_light(const Readout& r) {
   const std::vector<Tone> tones = tones_of(r.scanner, r.exposure);
-  read_by_direct_light(r, tones, [](std::size_t) { return true; });
+  const TapReader reader(r, tones);
+  for_direct_light(r, tones, [&](std::size_t, std::size_t first, LightImage& light) {
+    read_band(reader, first, light, [](std::size_t) { return true; });
+  });
 }
 
 SamplingError read_by_paths(const Readout& r, const LightTransport& transport, PathNeed need) {
   const std::vector<Tone> tones = tones_of(r.scanner, r.exposure);
   const PathView view{r.scanner, transport, r.world_from_scanner, r.exposure, r.address};
-  std::vector<char> by_paths(r.frames.taps[0][0].pixels.size(), 1);
+  std::vector<char> by_own_paths(r.frames.taps[0][0].pixels.size(), 1);
+  SamplingError error;
   if (need == PathNeed::interreflection) {
-    by_paths = surroundings_matter(view, tones);
-    read_by_direct_light(r, tones, [&](std::size_t pixel) { return !by_paths[pixel]; });
+    by_own_paths = surroundings_matter(view, tones);
+    error = read_shared_light(r, view, tones, by_own_paths);
   }
-  // enough for each stream to meet its share of bright paths before it may stop
-  const SamplingGoal goal{.least_samples = 64};
-  return ordered_sum(by_paths.size(), 64, SamplingError{}, [&](std::size_t begin, std::size_t end) {
-    SamplingError sum;
-    EstimateMemory memory;
-    Estimate taps;
-    for (std::size_t pixel = begin; pixel < end; ++pixel) {
-      if (!by_paths[pixel]) continue;
-      estimate_taps(view, tones, place_of(pixel, r.scanner.camera.width_px), ray_address(r, pixel),
-                    offset_m(r.scanner, r.address, pixel), goal, memory, taps);
-      sum.add(r.scanner.sensor, taps);
-      const bool all = r.exposure.frequency < 0;
-      read_pixel_taps(r, pixel, [&](int f, int k) { return taps.mean[all ? 4 * f + k : 0]; });
-    }
-    return sum;
-  });
+  error += read_own_paths(r, view, tones, by_own_paths);
+  return error;
 }
 
 }  // namespace scan::synth

@@ -123,12 +123,12 @@ Rendering corner_rendering() {
                 EffectSet(sensor_effects).set(Effect::interreflection));
 }
 
-// Taps are asked for to 0.5 of their noise (2.5 times 0.2). Streams stop by each other's spread, so
-// single taps may miss the goal.
+// Taps are asked for to 0.5 of their noise (2.5 times 0.2). The 96 pixels see one wall and share
+// their paths, at least 1024; pixels of their own would take 64 each.
 TEST(PhasePaths, AreAsManyAsTheNoiseCallsFor) {
   const Rendering rendering = corner_rendering();
-  EXPECT_GE(rendering.statistics.paths, 64u * 12 * 8);
-  EXPECT_LE(rendering.statistics.paths, 2048u * 12 * 8);
+  EXPECT_GE(rendering.statistics.paths, 1024u);
+  EXPECT_LE(rendering.statistics.paths, 64u * 12 * 8);
   EXPECT_GT(rendering.statistics.sampling_error_rms, 0);
   EXPECT_LE(rendering.statistics.sampling_error_rms, 0.5);
   EXPECT_LE(rendering.statistics.sampling_error_max, 2);
