@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "libscan/core/parallel.h"
+#include "synth/effects/convex.h"
 #include "synth/effects/laser_line_errors.h"
 #include "synth/effects/weight.h"
 #include "synth/scanners/laser_line_paths.h"
@@ -169,7 +170,8 @@ Outcome follow(const LaserView& view, const LightTransport& transport, const Sce
   if (!outcome.seen) return outcome;
   outcome.seen->point.wander_m = traits.wander_m;
   outcome.seen->point.extinction_per_m = traits.extinction_per_m;
-  trace_others(view, transport, index, *outcome.seen);
+  if (!light_meets_once(view.caster.scene(), view.world_from_camera.translation()))
+    trace_others(view, transport, index, *outcome.seen);
   return outcome;
 }
 
