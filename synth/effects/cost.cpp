@@ -12,12 +12,17 @@ namespace {
 
 constexpr double one_ray_in = 200;
 
-double render_s(const Scanner& scanner, const Scene& scene, const Pose& view,
+double render_s(const Scanner& scanner, const RayCaster& caster, const Pose& view,
                 const EffectSet& effects) {
-  const RayCaster caster(simplified(scene, effects));
   const Stopwatch watch;
   render(scanner, caster, view, {}, effects);
   return watch.seconds();
+}
+
+// Whether a scene is the same with the effect and without it (see simplified()).
+bool keeps_scene(Effect effect) {
+  return effect != Effect::medium && effect != Effect::scene_lights &&
+         effect != Effect::refraction && effect != Effect::subsurface;
 }
 
 }  // namespace
@@ -27,11 +32,15 @@ void measure_costs(EffectPlan& plan, const Scanner& scanner, const Scene& scene,
   const Scanner few = thinned(scanner, ray_count(scanner) / one_ray_in);
   const double scale = scans * ray_count(scanner) / ray_count(few);
   const EffectSet chosen = effects_of(plan);
-  const double chosen_s = render_s(few, scene, view, chosen);
+  const RayCaster caster(simplified(scene, chosen));
+  const double chosen_s = render_s(few, caster, view, chosen);
   for (EffectDecision& decision : plan) {
     if (!(decision.bound_m > 0)) continue;
     EffectSet other = chosen;
-    const double other_s = render_s(few, scene, view, other.set(decision.effect, !decision.on));
+    other.set(decision.effect, !decision.on);
+    const double other_s = keeps_scene(decision.effect)
+                               ? render_s(few, caster, view, other)
+                               : render_s(few, RayCaster(simplified(scene, other)), view, other);
     decision.cost_s = scale * std::max(0.0, decision.on ? chosen_s - other_s : other_s - chosen_s);
   }
 }

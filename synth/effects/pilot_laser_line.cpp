@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "libscan/core/parallel.h"
+#include "synth/effects/convex.h"
 #include "synth/effects/laser_line_errors.h"
 #include "synth/effects/stripe_light.h"
 #include "synth/effects/weight.h"
@@ -157,6 +158,7 @@ void weigh_light(const PilotScan& scan, const LaserView& view, const SheetHit& l
   }
   const double window = window_px(stripe_sigma_px(p));
   look_around(view, lit, window, seen);
+  if (light_meets_once(scene, view.world_from_camera.translation())) return;
   const LaserView whole_view{scan.scanner, scan.sheet, scan.opaque, view.world_from_camera};
   seen.light = stripe_light(whole_view, scan.transport, lit.pixel, window, index);
   p.uneven_e = seen.light.uneven_e;

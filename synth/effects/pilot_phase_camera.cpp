@@ -13,6 +13,7 @@
 
 #include "libscan/core/parallel.h"
 #include "libscan/core/units.h"
+#include "synth/effects/convex.h"
 #include "synth/effects/weight.h"
 #include "synth/scanners/phase_paths.h"
 
@@ -21,6 +22,7 @@ namespace {
 
 using std::numbers::pi;
 constexpr int paths_per_ray = 64;
+constexpr int paths_per_lone_ray = 4;    // where all light is direct
 constexpr double no_direct_light = 1e6;  // indirect share where there is indirect light alone
 
 double kappa(double frequency_hz) {
@@ -116,22 +118,28 @@ double mixed_m(const PhaseCamera& s, double spread) {
   return range_m(s, [&](double k) { return std::min(pi, k * spread); });
 }
 
-void weigh_optics(const Spot& spot, PilotRay& ray) {
+// What is seen through the corners of the pixel, and besides through the rim of the lens.
+void weigh_blur(const Spot& spot, PilotRay& ray) {
   const PhaseCamera& s = spot.s;
   std::vector<std::optional<LensRay>> pixel, lens;
   PhaseCamera sharp = s;
   sharp.aperture_m = 0;
   for (const auto& [x, y] : {std::pair(0, 0), {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}) {
     const Eigen::Vector2d corner = spot.place + 0.5 * Eigen::Vector2d(x, y);
-    pixel.push_back(lens_ray(sharp, corner, {0, 0}));
+    if (s.sub_rays > 1) pixel.push_back(lens_ray(sharp, corner, {0, 0}));
+    if (s.aperture_m == 0) continue;
     lens.push_back(lens_ray(s, corner, std::sqrt(0.5) * Eigen::Vector2d(x, y)));
     lens.push_back(lens_ray(s, corner, Eigen::Vector2d(x, 0)));
     lens.push_back(lens_ray(s, corner, Eigen::Vector2d(0, y)));
   }
   ray.range_spread_m = spread_m(spot, pixel);
   left_out(ray, Effect::footprint) = mixed_m(s, ray.range_spread_m);
-  if (s.aperture_m > 0) left_out(ray, Effect::defocus) = mixed_m(s, spread_m(spot, lens));
-  // Vignetting moves no range; without it the signal is stronger and three sigmas are smaller.
+  left_out(ray, Effect::defocus) = mixed_m(s, spread_m(spot, lens));
+}
+
+// Vignetting moves no range; without it the signal is stronger and three sigmas are smaller.
+void weigh_vignetting(const Spot& spot, PilotRay& ray) {
+  const PhaseCamera& s = spot.s;
   const auto view = lens_ray(s, spot.place, {0, 0});
   const double share = view ? view->share : 1;
   const double fixed_e2 = tap_variance_e2(s.sensor, spot.constant_e) - spot.constant_e;
@@ -176,7 +184,8 @@ void weigh_device(const Spot& spot, PilotRay& ray) {
 void weigh_all(const Spot& spot, double without_scene_lights_e, PilotRay& ray) {
   weigh_noise(spot, ray);
   weigh_indirect(spot, ray);
-  weigh_optics(spot, ray);
+  weigh_blur(spot, ray);
+  weigh_vignetting(spot, ray);
   weigh_motion(spot, ray);
   weigh_device(spot, ray);
   // Scene lights move no range; without them three sigmas are smaller.
@@ -209,8 +218,11 @@ std::optional<PilotRay> look(const PathView& view, const PixelPlace& pixel, std:
   if (!ray) return std::nullopt;
   const auto seen = first_surface(caster, view.world_from_scanner, ray->ray);
   if (!seen) return std::nullopt;
-  const IndirectLight light = indirect_light(view, pixel, index, paths_per_ray);
   const Scene& scene = caster.scene();
+  const IndirectLight light = indirect_light(
+      view, pixel, index,
+      light_meets_once(scene, view.world_from_scanner.translation()) ? paths_per_lone_ray
+                                                                     : paths_per_ray);
   PilotRay result{.range_m = seen->hit.distance_m};
   result.incidence_rad = std::acos(std::clamp(-seen->normal.dot(ray->ray.direction), 0.0, 1.0));
   result.met_smooth = is_smooth(scene.materials[scene.objects[seen->hit.object].material]);

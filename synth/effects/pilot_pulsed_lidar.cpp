@@ -9,6 +9,7 @@
 
 #include "libscan/core/parallel.h"
 #include "libscan/core/units.h"
+#include "synth/effects/convex.h"
 #include "synth/effects/weight.h"
 #include "synth/medium/diffusion.h"
 #include "synth/scanners/first_surface.h"
@@ -123,12 +124,30 @@ void weigh_paths(const PilotScan& scan, const Eigen::Vector3d& direction, std::s
       sigmas * (noise.all_m(floor_e2 + lamps_e) - noise.all_m(floor_e2));
 }
 
+// The decoder takes the first echo: what comes more than 5 pulse lengths behind the sub-rays before
+// it is another one (strong equal echoes part at 3.5, see acquire/waveform.h), if those stand above
+// twice the decoder's threshold.
+void leave_first_echo(const PulsedLidar& s, std::vector<Echo>& echoes) {
+  std::sort(echoes.begin(), echoes.end(),
+            [](const Echo& a, const Echo& b) { return a.time_s < b.time_s; });
+  double energy = 0;
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    const double threshold_e =
+        6 * std::sqrt(echo_noise(s, energy).width * std::sqrt(pi) * floor_variance_e2(s));
+    const bool is_behind = i > 0 && echoes[i].time_s - echoes[i - 1].time_s > 5 * s.pulse_sigma_s;
+    if (is_behind && energy > 2 * threshold_e) return echoes.resize(i);
+    energy += echoes[i].electrons;
+  }
+}
+
 // Sub-rays at ranges R_i with energies: the merged echo stands at their mean; from its third moment
-// on (the spread against four pulse lengths) parts may be taken for the whole.
+// on (the spread against four pulse lengths) parts may be taken for the whole. It is not before the
+// nearest or behind the farthest.
 void weigh_footprint(const PilotScan& scan, const Eigen::Vector3d& direction, PilotRay& ray) {
   const PulsedLidar& s = scan.scanner;
   std::vector<Echo> echoes;
   LidarBeam{s, scan.solid, scan.section}.sub_ray_echoes(scan.world_from_scanner, direction, echoes);
+  leave_first_echo(s, echoes);
   double nearest_m = ray.range_m, farthest_m = ray.range_m, energy = 0, moment = 0;
   for (const Echo& echo : echoes) {
     const double range_m = half_c * echo.time_s;
@@ -140,8 +159,9 @@ void weigh_footprint(const PilotScan& scan, const Eigen::Vector3d& direction, Pi
   ray.range_spread_m = farthest_m - nearest_m;
   const double shift_m = energy > 0 ? std::abs(moment / energy) : ray.range_spread_m;
   const double pulse_m = half_c * s.pulse_sigma_s;
-  left_out(ray, Effect::footprint) =
-      shift_m + ray.range_spread_m * std::min(1.0, std::pow(ray.range_spread_m / (4 * pulse_m), 2));
+  left_out(ray, Effect::footprint) = std::min(
+      shift_m + ray.range_spread_m * std::min(1.0, std::pow(ray.range_spread_m / (4 * pulse_m), 2)),
+      std::max(farthest_m - ray.range_m, ray.range_m - nearest_m));
 }
 
 // Between the ray's true and its middle place: how far the point and its range move.
@@ -251,7 +271,8 @@ std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direc
   weigh_walk(s, noise, ray);
   const auto& object = scan.solid.scene().objects[seen->hit.object];
   weigh_stay(scene.materials[object.material], noise, ray);
-  weigh_paths(scan, direction, index, electrons, ray);
+  if (!light_meets_once(scene, scan.world_from_scanner.translation()))
+    weigh_paths(scan, direction, index, electrons, ray);
   return ray;
 }
 

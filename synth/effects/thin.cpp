@@ -65,13 +65,18 @@ Scanner thin(PhaseCamera s, double factor) {
 double rays_of(const PulsedLidar& s) {
   return std::visit([](const auto& p) { return 1.0 * p.rows * p.columns; }, s.pattern);
 }
+// Rows first: what is thin and upright is met by a whole column or by none. As long as before, so
+// that a moving scanner goes as far.
 Scanner thin(PulsedLidar s, double factor) {
+  const double before = rays_of(s);
   std::visit(
       [&](auto& p) {
-        p.rows = fewer(p.rows, std::sqrt(factor));
-        p.columns = fewer(p.columns, std::sqrt(factor));
+        const int rows = fewer(p.rows, factor);
+        p.columns = fewer(p.columns, std::max(1.0, factor * rows / p.rows));
+        p.rows = rows;
       },
       s.pattern);
+  s.motion.interval_s *= before / rays_of(s);
   return s;
 }
 

@@ -4,10 +4,10 @@
 //
 // The matcher fits the shift between two windows by least squares: a change e_i of the difference
 // of the images moves it by sum(g e) / sum(g^2) with the slope g along the row (Lucas and Kanade
-// 1981), which by Cauchy and Schwarz is at most sqrt(sum e^2 / sum g^2). The pilot renders small
-// windows of both images with an effect and without it and takes this bound, to first order in the
-// change; reaching it would take a change that follows the slope everywhere. Z = f B / d makes
-// Z^2 / (f B) of a shift.
+// 1981), both less their means, since it fits the images' difference in brightness as well; by
+// Cauchy and Schwarz that is at most sqrt(sum e^2 / sum g^2). The pilot renders small windows of
+// both images with an effect and without it and takes this bound, to first order in the change.
+// Z = f B / d makes Z^2 / (f B) of a shift.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -19,7 +19,8 @@
 namespace scan::synth {
 namespace {
 
-constexpr int half_px = 2;           // the matcher's window of 5 x 5
+constexpr int half_px = 2;  // the matcher's window of 5 x 5
+constexpr double window_px = (2 * half_px + 1) * (2 * half_px + 1);
 constexpr int rays_per_window = 16;  // pilot rays are asked for by number; a window costs many
 
 // Mean electrons of the window about a pixel, one more pixel to each side of it in a row.
@@ -48,17 +49,31 @@ double slope_energy(const Window& w) {
   return sum;
 }
 
-// sqrt(sum e^2) of what the effect changes in the left window but not in the right one.
-double change_e(const Window& left_with, const Window& left_without, const Window& right_with,
-                const Window& right_without) {
+// Of the slopes less their mean: what is left of a slope if the brightness may change.
+double varying_slope_energy(const Window& w) {
   double sum = 0;
   for (int j = 0; j < 2 * half_px + 1; ++j)
+    for (int i = 0; i < 2 * half_px + 1; ++i) sum += w.slope(j, i);
+  return slope_energy(w) - sum * sum / window_px;
+}
+
+// The largest shift by what the effect changes in the left window but not in the right one: if that
+// followed the slope everywhere (Cauchy and Schwarz). The right window lies `between` two columns.
+double change_px(const Window& left_with, const Window& left_without, const Window& right_with,
+                 const Window& right_without, double between) {
+  const auto right = [&](int j, int i) {
+    return right_with.electrons[j][i] - right_without.electrons[j][i];
+  };
+  double sum = 0, squares = 0;
+  for (int j = 0; j < 2 * half_px + 1; ++j)
     for (int i = 1; i < 2 * half_px + 2; ++i) {
-      const double left = left_with.electrons[j][i] - left_without.electrons[j][i];
-      const double right = right_with.electrons[j][i] - right_without.electrons[j][i];
-      sum += (left - right) * (left - right);
+      const double change = left_with.electrons[j][i] - left_without.electrons[j][i] -
+                            (1 - between) * right(j, i) - between * right(j, i + 1);
+      sum += change;
+      squares += change * change;
     }
-  return std::sqrt(sum);
+  const double varying = std::max(0.0, squares - sum * sum / window_px);
+  return std::sqrt(varying / varying_slope_energy(left_with));
 }
 
 // A pixel of the pilot with all that its bounds need.
@@ -67,8 +82,8 @@ struct Spot {
   const RayCaster& caster;
   const Pose& pose;
   int column, row, right_column;
-  double m_per_px;  // of range per pixel of disparity
-  double slope_e2;
+  double right_between;  // of right_column and the next
+  double m_per_px;       // of range per pixel of disparity
 
   Window left(const StereoPair& device) const {
     return window(device, caster, pose, StereoSide::left, column, row);
@@ -76,7 +91,10 @@ struct Spot {
   Window right(const StereoPair& device) const {
     return window(device, caster, pose, StereoSide::right, right_column, row);
   }
-  double bound_m(double change) const { return m_per_px * change / std::sqrt(slope_e2); }
+  // a match stays within the search range, whatever changes
+  double bound_m(double shift_px) const {
+    return m_per_px * std::min(shift_px, static_cast<double>(s.calibration.disparities_px));
+  }
 };
 
 bool is_set(const StereoPair& s, Effect effect) {
@@ -124,8 +142,8 @@ void weigh_windows(const Spot& spot, const Window& left, PilotRay& ray) {
        {Effect::footprint, Effect::defocus, Effect::vignetting, Effect::motion}) {
     if (!is_set(spot.s, effect)) continue;
     const StereoPair without = with_effects(spot.s, EffectSet::all().without(effect));
-    ray.left_out_m[static_cast<int>(effect)] =
-        spot.bound_m(change_e(left, spot.left(without), right, spot.right(without)));
+    ray.left_out_m[static_cast<int>(effect)] = spot.bound_m(
+        change_px(left, spot.left(without), right, spot.right(without), spot.right_between));
   }
 }
 
@@ -156,29 +174,30 @@ std::optional<PilotRay> look(const StereoPair& s, const RayCaster& caster, const
     return PilotRay{.range_m = range_m,
                     .sigma_m = 0.1 * range_m * z_m / (c.focal_px * c.baseline_m),
                     .met_smooth = true};
-  Spot spot{.s = s,
-            .caster = caster,
-            .pose = pose,
-            .column = column,
-            .row = row,
-            .right_column = column - static_cast<int>(
-                                         std::lround(c.focal_px * c.baseline_m / z_m - c.doffs_px)),
-            .m_per_px = range_m * z_m / (c.focal_px * c.baseline_m),
-            .slope_e2 = 0};
+  const double right_px = column - (c.focal_px * c.baseline_m / z_m - c.doffs_px);
+  const Spot spot{.s = s,
+                  .caster = caster,
+                  .pose = pose,
+                  .column = column,
+                  .row = row,
+                  .right_column = static_cast<int>(std::floor(right_px)),
+                  .right_between = right_px - std::floor(right_px),
+                  .m_per_px = range_m * z_m / (c.focal_px * c.baseline_m)};
   const Window left = spot.left(s);
-  spot.slope_e2 = slope_energy(left);
+  const double slope_e2 = slope_energy(left), varying_slope_e2 = varying_slope_energy(left);
   const double signal_e = left.electrons[half_px][half_px + 1];
   const double noise_e2 = signal_e + s.sensor.read_noise_e * s.sensor.read_noise_e +
                           s.sensor.gain_e_per_dn * s.sensor.gain_e_per_dn / 12;
   // both images are noisy; less texture than noise gives no match
-  if (!(spot.slope_e2 > 2 * noise_e2)) return std::nullopt;
+  if (!(varying_slope_e2 > 2 * noise_e2)) return std::nullopt;
   PilotRay ray{.range_m = range_m,
-               .sigma_m = spot.m_per_px * std::sqrt(2 * noise_e2 / spot.slope_e2),
+               .sigma_m = spot.m_per_px * std::sqrt(2 * noise_e2 / slope_e2),
                .signal_e = signal_e,
                .incidence_rad =
                    std::acos(std::clamp(-seen->normal.dot(seen->point.normalized()), -1.0, 1.0))};
-  const double windows_e = std::sqrt((2.0 * half_px + 1) * (2 * half_px + 1)) * signal_e;
-  ray.left_out_m[static_cast<int>(Effect::interreflection)] = spot.bound_m(windows_e);
+  // all the light of the window, changed along its slope (Cauchy and Schwarz)
+  const double glossy_px = std::sqrt(window_px / varying_slope_e2) * signal_e;
+  ray.left_out_m[static_cast<int>(Effect::interreflection)] = spot.bound_m(glossy_px);
   weigh_windows(spot, left, ray);
   weigh_shifts(spot, left, seen->point, ray);
   return ray;

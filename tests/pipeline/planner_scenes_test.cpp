@@ -44,6 +44,21 @@ std::vector<std::string> scenes() {
   return names;
 }
 
+// Within the bounds, unbiased beyond doubt, and decided for 95 % of the points; not for those of
+// stereo pairs, whose path noise of 0.2 of a reading's own, with rounding, would take thousands of
+// scans.
+void expect_proven(const json& check, bool is_stereo) {
+  EXPECT_TRUE(check.at("pass").get<bool>()) << check.dump();
+  const auto number = [&](const char* key) { return check.at(key).get<double>(); };
+  EXPECT_GT(number("points"), 100);
+  EXPECT_EQ(number("beyond"), 0) << check.dump();
+  EXPECT_GE(number("bias_low_sigma"), -0.1) << check.dump();
+  EXPECT_LE(number("bias_high_sigma"), 0.1) << check.dump();
+  const double open = number("undecided") + number("unsteady") + number("at_edges");
+  const double open_share = open / (number("points") + number("unsteady") + number("at_edges"));
+  EXPECT_TRUE(is_stereo || open_share <= 0.05) << check.dump();
+}
+
 class PlannerScenes : public testing::TestWithParam<std::string> {};
 
 TEST_P(PlannerScenes, ArePlannedWithinTheirBounds) {
@@ -61,18 +76,11 @@ TEST_P(PlannerScenes, ArePlannedWithinTheirBounds) {
   ASSERT_TRUE(called_for.contains(GetParam())) << "state what the new scene calls for";
   for (const std::string& effect : called_for.at(GetParam()))
     EXPECT_TRUE(on.contains(effect)) << effect;
-  if (called_for.at(GetParam()).empty())
+  if (called_for.at(GetParam()).empty()) {
     for (const char* effect : {"mirror reflection", "refraction", "subsurface", "medium", "motion"})
       EXPECT_FALSE(on.contains(effect)) << effect;
-  for (const json& check : result.at("check")) {
-    std::printf("  with %-18s %9.3g mm of at most %9.3g mm (%5.2g mm by sampling), bias %+.3f\n",
-                check.at("effect").get<std::string>().c_str(),
-                check.at("difference_m").get<double>() * 1e3,
-                check.at("bound_m").get<double>() * 1e3, check.at("sampling_m").get<double>() * 1e3,
-                check.at("bias_sigma").get<double>());
-    EXPECT_GT(check.at("rays").get<int>(), 100);
-    EXPECT_TRUE(check.at("pass").get<bool>()) << check.dump();
   }
+  for (const json& check : result.at("check")) expect_proven(check, GetParam().ends_with("stereo"));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PlannerScenes, testing::ValuesIn(scenes()), [](const auto& scene) {

@@ -58,15 +58,16 @@ Comparison compare(const StereoPair& pair, const Scene& scene, Effect effect) {
   const std::vector<PilotRay> rays = pilot(pair, caster, Pose::Identity(), 8000);
   const Weighed weighed = weigh(pair, scene, effect, rays);
   EXPECT_TRUE(weighed.weight.has_value()) << weighed.why_absent;
-  const EffectSet device = {Effect::footprint, Effect::defocus,        Effect::vignetting,
-                            Effect::motion,    Effect::miscalibration, Effect::rolling_shutter};
+  EffectSet with_it = {Effect::footprint, Effect::defocus,        Effect::vignetting,
+                       Effect::motion,    Effect::miscalibration, Effect::rolling_shutter};
+  with_it.set(effect);
   const auto points = [&](const EffectSet& effects) {
     const Scan scan = acquire(render(pair, caster, Pose::Identity(), {}, effects).frames);
     std::map<std::uint32_t, Eigen::Vector3d> of_ray;
     for (std::size_t i = 0; i < scan.ray.size(); ++i) of_ray[scan.ray[i]] = scan.cloud.points[i];
     return of_ray;
   };
-  const auto with = points(device), without = points(device.without(effect));
+  const auto with = points(with_it), without = points(with_it.without(effect));
   std::vector<double> differences;
   for (const auto& [ray, point] : with)
     if (const auto other = without.find(ray); other != without.end())
@@ -77,49 +78,98 @@ Comparison compare(const StereoPair& pair, const Scene& scene, Effect effect) {
           rounding_m(pair, rays)};
 }
 
-void expect_tight(const Comparison& found) {
+// A scene built to meet the bound of an effect.
+struct Bench {
+  std::string name;
+  Effect effect;
+  StereoPair pair = pair_of_200_px();
+  Scene scene = printed_plane(0.2);
+};
+
+Bench yaw() {  // of the right camera: 0.3 px
+  Bench b{"Yaw", Effect::miscalibration};
+  b.pair.right_rotation_error_rad = {0, 1e-3, 0};
+  return b;
+}
+Bench pitch() {
+  Bench b{"Pitch", Effect::miscalibration};
+  b.pair.right_rotation_error_rad = {1e-3, 0, 0};
+  return b;
+}
+Bench rows_of_an_advancing_pair() {
+  Bench b{"RollingShutter", Effect::rolling_shutter};
+  b.pair.velocity_m_s = {0, 0, 5};
+  b.pair.row_time_s = 1e-4;
+  return b;
+}
+Bench texture_of_a_pixel() {
+  Bench b{"Footprint", Effect::footprint};
+  b.scene.materials[0].texture = NoiseTexture{0.003, 1, 0.9};
+  return b;
+}
+Bench corners_of_a_wide_lens() {  // 45 degrees off its axis the light is a quarter
+  Bench b{"Vignetting", Effect::vignetting};
+  b.pair.calibration.focal_px = 100;
+  b.pair.calibration.baseline_m = 0.15;
+  b.pair.vignetting = 1;
+  b.scene.materials[0].texture = NoiseTexture{0.048, 1, 0.9};
+  return b;
+}
+Bench exposure_while_the_pair_advances() {  // by 40 mm
+  Bench b{.name = "Motion", .effect = Effect::motion, .scene = printed_plane(0.5)};
+  b.pair.velocity_m_s = {0, 0, 4};
+  b.pair.exposure_s = 0.01;
+  b.pair.sub_rays = 5;
+  return b;
+}
+Bench few_photons() {
+  Bench b{"ShotNoise", Effect::shot_noise};
+  b.pair.ambient_electrons = 1000;
+  b.pair.sensor.gain_e_per_dn = 4;
+  return b;
+}
+Bench noisy_reading() {
+  Bench b{"ReadNoise", Effect::read_noise};
+  b.pair.sensor.read_noise_e = 50;
+  return b;
+}
+
+void PrintTo(const Bench& bench, std::ostream* out) {
+  *out << bench.name;
+}
+
+class StereoBench : public testing::TestWithParam<Bench> {};
+
+TEST_P(StereoBench, MeetsItsBoundToATenthAndNotMore) {
+  const Bench& bench = GetParam();
+  const Comparison found = compare(bench.pair, bench.scene, bench.effect);
   std::printf("  bound %.4g mm, rounding %.4g mm, largest difference %.4g mm\n",
               found.bound_m * 1e3, found.rounding_m * 1e3, found.largest_m * 1e3);
   EXPECT_LE(found.largest_m, found.bound_m + found.rounding_m);
   EXPECT_GE(found.largest_m, found.bound_m / 10);
+  EXPECT_GE(found.largest_m, 2 * found.rounding_m) << "rounding alone must not pass";
 }
 
-TEST(StereoWeight, BoundsAYawOfTheRightCamera) {
-  StereoPair pair = pair_of_200_px();
-  pair.right_rotation_error_rad = {0, 1e-3, 0};  // 0.3 px
-  expect_tight(compare(pair, printed_plane(0.2), Effect::miscalibration));
-}
+INSTANTIATE_TEST_SUITE_P(All, StereoBench,
+                         testing::Values(yaw(), pitch(), rows_of_an_advancing_pair(),
+                                         texture_of_a_pixel(), corners_of_a_wide_lens(),
+                                         exposure_while_the_pair_advances(), few_photons(),
+                                         noisy_reading()),
+                         [](const auto& bench) { return bench.param.name; });
 
-TEST(StereoWeight, BoundsAPitchOfTheRightCamera) {
-  StereoPair pair = pair_of_200_px();
-  pair.right_rotation_error_rad = {1e-3, 0, 0};
-  expect_tight(compare(pair, printed_plane(0.2), Effect::miscalibration));
-}
-
-TEST(StereoWeight, BoundsRowsExposedWhileThePairAdvances) {
-  StereoPair pair = pair_of_200_px();
-  pair.velocity_m_s = {0, 0, 0.5};
-  pair.row_time_s = 1e-4;
-  expect_tight(compare(pair, printed_plane(0.2), Effect::rolling_shutter));
-}
-
-TEST(StereoWeight, BoundsPixelsWiderThanTheTexture) {
-  StereoPair pair = pair_of_200_px();
-  Scene scene = printed_plane(0.2);
-  scene.materials[0].texture = NoiseTexture{0.016, 4, 0.9};  // down to a pixel
-  expect_tight(compare(pair, scene, Effect::footprint));
-}
-
-TEST(StereoWeight, BoundsBlurOnATiltedPlane) {
+// How near a lens's blur comes to its bound is hidden by the rounding of the images: the bound is
+// that of windows with next to no texture.
+TEST(StereoBounds, HoldForBlurOnATiltedPlane) {
   StereoPair pair = pair_of_200_px();
   pair.focus_m = 0.5;
-  pair.aperture_m = 0.02;  // 2 px at 0.6 m
+  pair.aperture_m = 0.05;  // 5 px at 0.6 m
   pair.sub_rays = 5;
-  expect_tight(compare(pair, printed_plane(0.5), Effect::defocus));
+  const Comparison found = compare(pair, printed_plane(0.5), Effect::defocus);
+  EXPECT_LE(found.largest_m, found.bound_m + found.rounding_m);
 }
 
 // The scanner's own sigma, told by the pilot, against the decoder's.
-TEST(StereoWeight, KnowsTheScannersOwnSigma) {
+TEST(StereoPilot, KnowsTheScannersOwnSigma) {
   const StereoPair pair = pair_of_200_px();
   const RayCaster caster(printed_plane(0.2));
   std::vector<double> told, found;

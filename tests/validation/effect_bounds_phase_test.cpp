@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// The planner's bounds for a phase camera of what adds noise or shows ghosts, against decoded
+// scans; those of what moves ranges are in tests/synth/weigh_phase_camera_test.cpp.
+#include <algorithm>
+
+#include "libscan/acquire/phase.h"
+#include "synth/effects/weight.h"
+#include "tests/synth/phase_bench.h"
+
+namespace scan::synth {
+namespace {
+
+// 48 x 32 px; the wall turns the light by 0.3 rad.
+PhaseCamera camera() {
+  PhaseCamera camera = small_camera();
+  camera.frequencies_hz = {80e6, 120e6};
+  camera.sensor = {.gain_e_per_dn = 0.25, .full_well_e = 1e6, .bits = 16};
+  camera.max_range_m = 3;
+  return camera;
+}
+
+Scene wall() {
+  return {.objects = {plane_at(1.5, 0.3)}, .materials = {plain(0.6)}};
+}
+
+Weight weight_of(const PhaseCamera& camera, const Scene& scene, Effect effect) {
+  const auto rays = pilot(camera, RayCaster(scene), Pose::Identity(), 48 * 32);
+  const Weighed weighed = weigh(camera, scene, effect, rays);
+  EXPECT_TRUE(weighed.weight) << weighed.why_absent;
+  return weighed.weight.value_or(Weight{});
+}
+
+// Range errors by the noise alone, each over the bound; bound: three of the largest sigma.
+TEST(PhaseBounds, OfNoiseAreThreeSigma) {
+  for (const Effect effect : {Effect::shot_noise, Effect::read_noise}) {
+    PhaseCamera device = camera();
+    device.sensor.read_noise_e = effect == Effect::read_noise ? 60 : 0;
+    const Scene scene = wall();
+    const Scan with = acquire_phase(taps_of(device, scene, {effect}));
+    const Scan without = acquire_phase(taps_of(device, scene, {}));
+    ASSERT_EQ(with.ray, without.ray);
+    const Weight weight = weight_of(device, scene, effect);
+    std::vector<double> moved_m;
+    for (std::size_t i = 0; i < with.ray.size(); ++i)
+      moved_m.push_back((with.cloud.points[i] - without.cloud.points[i]).norm());
+    std::sort(moved_m.begin(), moved_m.end());
+    // 2.58 sigma of the mean pixel, whose sigma is less than the largest
+    const double most_m = moved_m[moved_m.size() * 99 / 100];
+    EXPECT_LE(most_m, weight.bound_m) << name(effect);
+    EXPECT_GE(most_m, weight.bound_m / 10) << name(effect);
+  }
+}
+
+// What makes an effect's light: three of the change of sigma that the decoder states.
+void expect_sigma_bound(const PhaseCamera& device, const Scene& scene, Effect effect) {
+  const Scan with = acquire_phase(taps_of(device, scene, {effect}));
+  const Scan without = acquire_phase(taps_of(device, simplified(scene, {}), {}));
+  ASSERT_EQ(with.ray, without.ray);
+  const Weight weight = weight_of(device, scene, effect);
+  std::vector<double> changes_m;
+  for (std::size_t i = 0; i < with.ray.size(); ++i)
+    changes_m.push_back(3 * (with.cloud.sigma_m[i] - without.cloud.sigma_m[i]));
+  std::sort(changes_m.begin(), changes_m.end());
+  const double most_m = changes_m[changes_m.size() * 99 / 100];
+  // the decoder tells its sigma by one reading of the amplitude, good to some per cent here
+  EXPECT_LE(most_m, 1.05 * weight.bound_m) << name(effect);
+  EXPECT_GE(most_m, weight.bound_m / 10) << name(effect);
+}
+
+TEST(PhaseBounds, OfVignettingIsThatOfWeakerLight) {
+  PhaseCamera device = camera();
+  device.vignetting = 1;
+  expect_sigma_bound(device, wall(), Effect::vignetting);
+}
+
+TEST(PhaseBounds, OfSceneLightsIsThatOfTheirNoise) {
+  PhaseCamera device = camera();
+  device.electrons_per_w_m2 = 1000;
+  Scene scene = wall();
+  scene.lights.push_back(PointLight{.position_m = {0, 1, 0}, .intensity_w_sr = 30});
+  expect_sigma_bound(device, scene, Effect::scene_lights);
+}
+
+// A mirror at 1 m turns the view to a wall 1.5 m beside it: the ghost is 1.5 m behind the mirror,
+// of 3 m that the camera tells apart.
+TEST(PhaseBounds, OfAMirrorIsReachedByAGhost) {
+  const PhaseCamera device = camera();
+  Scene scene{.objects = {plane_at(1, std::numbers::pi / 4), plane_at(0, 0, 1)},
+              .materials = {{.name = "mirror", .bsdf = Conductor{.roughness = 0}, .texture = {}},
+                            plain(0.5)}};
+  const Eigen::AngleAxisd sideways(std::numbers::pi / 2, Eigen::Vector3d::UnitY());
+  scene.objects[1].world_from_object = make_pose(sideways.toRotationMatrix(), {-1.5, 0, 0});
+  const Scan seen = acquire_phase(taps_of(device, scene, {Effect::mirror_reflection}));
+  const auto truth = true_rays(device, RayCaster(scene), Pose::Identity());
+  ASSERT_GT(seen.ray.size(), 1000u);
+  double most_m = 0;
+  for (std::size_t i = 0; i < seen.ray.size(); ++i)
+    most_m = std::max(most_m, (seen.cloud.points[i] - truth[seen.ray[i]].point_in_scanner).norm());
+  const double bound_m = weight_of(device, scene, Effect::mirror_reflection).bound_m;
+  EXPECT_LE(most_m, bound_m);
+  EXPECT_GE(most_m, bound_m / 10);
+}
+
+}  // namespace
+}  // namespace scan::synth
