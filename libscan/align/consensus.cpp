@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/align/consensus.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "libscan/align/clique.h"
+#include "libscan/align/rigid_fit.h"
+#include "libscan/core/parallel.h"
+#include "libscan/core/random.h"
+
+namespace scan {
+namespace {
+
+constexpr std::uint64_t clique_budget = 1'000'000;  // word operations: a millisecond
+constexpr std::size_t least_members = 3;
+constexpr std::size_t most_seeds = 512;
+constexpr int refits = 3;
+
+std::vector<std::uint32_t> inliers_of(std::span<const Correspondence> all, const Pose& pose,
+                                      double noise_m) {
+  std::vector<std::uint32_t> inliers;
+  for (std::uint32_t i = 0; i < all.size(); ++i)
+    if ((pose * all[i].source - all[i].target).squaredNorm() <= noise_m * noise_m)
+      inliers.push_back(i);
+  return inliers;
+}
+
+Pose fitted(std::span<const Correspondence> all, const std::vector<std::uint32_t>& members) {
+  std::vector<Eigen::Vector3d> source, target;
+  for (const std::uint32_t i : members) {
+    source.push_back(all[i].source);
+    target.push_back(all[i].target);
+  }
+  return rigid_fit(source, target).target_from_source;
+}
+
+ConsensusPose pose_of(std::span<const Correspondence> all, std::vector<std::uint32_t> members,
+                      double noise_m) {
+  ConsensusPose best;
+  for (int round = 0; round < refits && members.size() >= least_members; ++round) {
+    const Pose pose = fitted(all, members);
+    members = inliers_of(all, pose, noise_m);
+    if (members.size() <= best.inliers.size()) break;
+    best = {pose, members, 0};
+  }
+  return best;
+}
+
+// Correspondences by falling number of those they agree with.
+std::vector<std::uint32_t> by_degree(const BitGraph& graph) {
+  std::vector<std::size_t> degree(graph.size());
+  parallel_for(graph.size(), [&](std::size_t i) { degree[i] = graph.degree(i); });
+  std::vector<std::uint32_t> order(graph.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return degree[a] > degree[b]; });
+  return order;
+}
+
+struct Candidates {
+  std::vector<ConsensusPose> poses;
+  std::vector<std::uint32_t> largest;  // clique
+};
+
+// A clique and its pose around each correspondence that no pose before explains.
+Candidates explore(std::span<const Correspondence> all, const BitGraph& graph, double noise_m) {
+  Candidates found;
+  std::vector<bool> explained(all.size(), false);
+  std::size_t seeds = 0;
+  for (const std::uint32_t seed : by_degree(graph)) {
+    if (explained[seed]) continue;
+    if (++seeds > most_seeds) break;
+    std::vector<std::uint32_t> clique = greedy_clique(graph, seed);
+    for (const std::uint32_t i : clique) explained[i] = true;
+    if (clique.size() < least_members) continue;
+    found.poses.push_back(pose_of(all, clique, noise_m));
+    const Pose& pose = found.poses.back().target_from_source;
+    for (const std::uint32_t i : inliers_of(all, pose, 2 * noise_m)) explained[i] = true;
+    if (clique.size() > found.largest.size()) found.largest = std::move(clique);
+  }
+  return found;
+}
+
+// How often two unrelated correspondences agree: the distance between two source points, with that
+// between the target points of two others.
+double chance_of_agreement(std::span<const Correspondence> all, double tolerance_m) {
+  constexpr std::size_t draws = 8192;
+  RandomStream random(0, 0, 0);
+  const auto draw = [&] { return std::size_t(random.uniform() * static_cast<double>(all.size())); };
+  std::size_t agreeing = 1;  // at least: none need be seen
+  for (std::size_t k = 0; k < draws; ++k) {
+    const std::size_t a = draw(), b = draw(), c = draw(), d = draw();
+    if (a == b || c == d) continue;
+    const double source_m = (all[a].source - all[b].source).norm();
+    const double target_m = (all[c].target - all[d].target).norm();
+    agreeing += std::abs(source_m - target_m) <= tolerance_m;
+  }
+  return static_cast<double>(agreeing) / (draws + 1);
+}
+
+// Expected number of sets of k out of n unrelated correspondences that one motion explains: three
+// fix it and must agree in three distances; each further one adds three coordinates, so three more
+// (Desolneux, Moisan and Morel 2000 for the principle): C(n, k) p^(3 k - 6).
+double expected_by_chance(std::size_t n, std::size_t k, double p) {
+  if (k < least_members || !(p < 1)) return static_cast<double>(n);
+  const auto total = static_cast<double>(n), chosen = static_cast<double>(k);
+  const double log_sets =
+      std::lgamma(total + 1) - std::lgamma(chosen + 1) - std::lgamma(total - chosen + 1);
+  return std::exp(std::min(log_sets + (3 * chosen - 6) * std::log(p), 700.0));
+}
+
+double shared_share(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+  std::vector<std::uint32_t> both;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+  return static_cast<double>(both.size()) / static_cast<double>(std::min(a.size(), b.size()));
+}
+
+}  // namespace
+
+Consensus find_consensus(std::span<const Correspondence> correspondences,
+                         const ConsensusOptions& options) {
+  const BitGraph graph = compatibility(
+      correspondences, {2 * options.noise_m, options.least_distance_m, options.cosine});
+  Consensus result;
+  auto [poses, known] = explore(correspondences, graph, options.noise_m);
+  if (poses.empty()) return result;
+  const std::size_t found = known.size();
+  const Clique largest = largest_clique(graph, std::move(known), clique_budget);
+  result.clique_bound = largest.upper_bound;
+  result.largest_clique = largest.members.size();
+  if (result.largest_clique > found)
+    poses.push_back(pose_of(correspondences, largest.members, options.noise_m));
+  std::stable_sort(poses.begin(), poses.end(), [](const auto& a, const auto& b) {
+    return a.inliers.size() > b.inliers.size();
+  });
+  const double p = chance_of_agreement(correspondences, 2 * options.noise_m);
+  for (ConsensusPose& pose : poses) {
+    if (pose.inliers.size() < least_members || result.poses.size() == options.most_poses) break;
+    const bool seen = std::any_of(result.poses.begin(), result.poses.end(), [&](const auto& other) {
+      return shared_share(pose.inliers, other.inliers) > 0.5;
+    });
+    if (seen) continue;
+    pose.expected_by_chance = expected_by_chance(graph.size(), pose.inliers.size(), p);
+    result.poses.push_back(std::move(pose));
+  }
+  return result;
+}
+
+}  // namespace scan

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/align/features.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <unordered_set>
+
+#include "libscan/align/fpfh.h"
+#include "libscan/core/error.h"
+#include "libscan/search/kd_tree.h"
+#include "libscan/search/voxel_grid.h"
+
+namespace scan {
+namespace {
+
+constexpr double wanted_cubes = 3000;
+// Radii of the two descriptors in sides of a cube: 50 neighbours on a plane, and 200.
+constexpr std::array<double, 2> radii_in_sides = {4, 8};
+
+std::size_t occupied_cubes(const PointCloud& cloud, double side_m) {
+  PointCloud bare;
+  bare.points = cloud.points;
+  return voxel_grid(bare, side_m).size();
+}
+
+// The side at which the cloud fills the wanted number of cubes, or all its points lie in different
+// ones: cubes of a surface grow in number as side^-2.
+double side_of(const PointCloud& cloud) {
+  const PointCloud finite = subset(cloud, finite_points(cloud));
+  const Bounds box = bounds_of(finite.points);
+  if (box.isEmpty() || !(box.diagonal().norm() > 0)) return 0;
+  double side_m = box.diagonal().norm() / std::sqrt(wanted_cubes);
+  for (int round = 0; round < 4; ++round) {
+    const double cubes = static_cast<double>(occupied_cubes(finite, side_m));
+    const double wanted = std::min(wanted_cubes, 0.75 * static_cast<double>(finite.size()));
+    side_m *= std::sqrt(std::max(cubes, 1.0) / std::max(wanted, 1.0));
+  }
+  return side_m;
+}
+
+}  // namespace
+
+double feature_side_m(std::span<const PointCloud> clouds) {
+  std::vector<double> sides_m;
+  for (const PointCloud& cloud : clouds)
+    if (const double side_m = side_of(cloud); side_m > 0) sides_m.push_back(side_m);
+  if (sides_m.empty()) return 0;
+  const auto middle = sides_m.begin() + static_cast<std::ptrdiff_t>((sides_m.size() - 1) / 2);
+  std::nth_element(sides_m.begin(), middle, sides_m.end());
+  return *middle;
+}
+
+ScanFeatures describe(const PointCloud& cloud, double side_m,
+                      const std::optional<Eigen::Vector3d>& viewpoint) {
+  if (cloud.normals.empty() && !cloud.empty())
+    throw Error(Trouble::input, "features: the cloud has no normals",
+                "estimate them, facing the scanner");
+  if (!(side_m > 0))
+    throw Error(Trouble::usage,
+                "features/side_m: " + std::to_string(side_m) + ", must be positive");
+  ScanFeatures features;
+  features.side_m = side_m;
+  features.viewpoint = viewpoint;
+  PointCloud bare;
+  for (const std::uint32_t i : finite_points(cloud)) {
+    if (cloud.normals[i].isZero(0)) continue;
+    bare.points.push_back(cloud.points[i]);
+    bare.normals.push_back(cloud.normals[i]);
+  }
+  if (bare.empty()) return features;
+  features.cloud = voxel_grid(bare, side_m);
+  const KdTree search(features.cloud.points);
+  features.descriptors.resize(ScanFeatures::dimensions * features.cloud.size());
+  for (std::size_t scale = 0; scale < radii_in_sides.size(); ++scale) {
+    const std::vector<Fpfh> histograms =
+        fpfh(features.cloud, search, radii_in_sides[scale] * side_m);
+    for (std::size_t i = 0; i < histograms.size(); ++i)
+      std::copy(
+          histograms[i].begin(), histograms[i].end(),
+          features.descriptors.begin() + static_cast<std::ptrdiff_t>(i * ScanFeatures::dimensions +
+                                                                     scale * histograms[i].size()));
+  }
+  return features;
+}
+
+}  // namespace scan
