@@ -84,32 +84,39 @@ Candidates explore(std::span<const Correspondence> all, const BitGraph& graph, d
   return found;
 }
 
-// How often two unrelated correspondences agree: the distance between two source points, with that
-// between the target points of two others.
-double chance_of_agreement(std::span<const Correspondence> all, double tolerance_m) {
+// How often unrelated correspondences agree by chance.
+struct Chance {
+  double distance = 0;  // the distance of two, with that between the targets of two others
+  double place = 0;     // the target of one, with the place that a motion gives to it
+};
+
+// From draws; at least one is taken to agree, since none need be seen. A motion that three
+// correspondences fix to the noise gives a place to twice that.
+Chance chance_of(std::span<const Correspondence> all, double noise_m) {
   constexpr std::size_t draws = 8192;
   RandomStream random(0, 0, 0);
   const auto draw = [&] { return std::size_t(random.uniform() * static_cast<double>(all.size())); };
-  std::size_t agreeing = 1;  // at least: none need be seen
+  double distances = 1, places = 1;
   for (std::size_t k = 0; k < draws; ++k) {
     const std::size_t a = draw(), b = draw(), c = draw(), d = draw();
     if (a == b || c == d) continue;
     const double source_m = (all[a].source - all[b].source).norm();
     const double target_m = (all[c].target - all[d].target).norm();
-    agreeing += std::abs(source_m - target_m) <= tolerance_m;
+    distances += std::abs(source_m - target_m) <= 2 * noise_m;
+    places += target_m <= 2 * noise_m;
   }
-  return static_cast<double>(agreeing) / (draws + 1);
+  return {distances / (draws + 1), places / (draws + 1)};
 }
 
 // Expected number of sets of k out of n unrelated correspondences that one motion explains: three
-// fix it and must agree in three distances; each further one adds three coordinates, so three more
-// (Desolneux, Moisan and Morel 2000 for the principle): C(n, k) p^(3 k - 6).
-double expected_by_chance(std::size_t n, std::size_t k, double p) {
-  if (k < least_members || !(p < 1)) return static_cast<double>(n);
+// fix it and must agree in three distances, the others must land in their places (the a-contrario
+// principle of Desolneux, Moisan and Morel 2000).
+double expected_by_chance(std::size_t n, std::size_t k, const Chance& chance) {
   const auto total = static_cast<double>(n), chosen = static_cast<double>(k);
   const double log_sets =
       std::lgamma(total + 1) - std::lgamma(chosen + 1) - std::lgamma(total - chosen + 1);
-  return std::exp(std::min(log_sets + (3 * chosen - 6) * std::log(p), 700.0));
+  const double log_agree = 3 * std::log(chance.distance) + (chosen - 3) * std::log(chance.place);
+  return std::exp(std::min(log_sets + log_agree, 700.0));
 }
 
 double shared_share(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
@@ -136,14 +143,15 @@ Consensus find_consensus(std::span<const Correspondence> correspondences,
   std::stable_sort(poses.begin(), poses.end(), [](const auto& a, const auto& b) {
     return a.inliers.size() > b.inliers.size();
   });
-  const double p = chance_of_agreement(correspondences, 2 * options.noise_m);
+  const Chance chance = chance_of(correspondences, options.noise_m);
   for (ConsensusPose& pose : poses) {
     if (pose.inliers.size() < least_members || result.poses.size() == options.most_poses) break;
     const bool seen = std::any_of(result.poses.begin(), result.poses.end(), [&](const auto& other) {
       return shared_share(pose.inliers, other.inliers) > 0.5;
     });
     if (seen) continue;
-    pose.expected_by_chance = expected_by_chance(graph.size(), pose.inliers.size(), p);
+    pose.expected_by_chance = expected_by_chance(graph.size(), pose.inliers.size(), chance);
+    if (pose.expected_by_chance > options.most_by_chance) break;
     result.poses.push_back(std::move(pose));
   }
   return result;

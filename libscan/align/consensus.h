@@ -17,17 +17,18 @@ struct ConsensusOptions {
   double least_distance_m = 0;  // correspondences nearer to each other do not support each other
   double cosine = 2;            // see CompatibilityLimits
   std::size_t most_poses = 64;
+  double most_by_chance = 1e-3;  // poses of which chance would offer more are left out
 };
 
 struct ConsensusPose {
   Pose target_from_source = Pose::Identity();
   std::vector<std::uint32_t> inliers;  // rising
-  // Expected number of poses that as many unrelated correspondences would agree on by chance.
+  // Expected number of poses that so many of as many unrelated correspondences would agree on.
   double expected_by_chance = 0;
 };
 
 struct Consensus {
-  std::vector<ConsensusPose> poses;  // different ones, those with most inliers first
+  std::vector<ConsensusPose> poses;  // different ones, most inliers first; none: not certain
   // No motion is supported by more correspondences that pairwise agree: proved.
   std::size_t clique_bound = 0;
   std::size_t largest_clique = 0;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
-#include <unordered_set>
 
 #include "libscan/align/fpfh.h"
 #include "libscan/core/error.h"
@@ -18,27 +17,30 @@ namespace scan {
 namespace {
 
 constexpr double wanted_cubes = 3000;
+constexpr std::size_t counted_points = 100000;
 // Radii of the two descriptors in sides of a cube: 50 neighbours on a plane, and 200.
 constexpr std::array<double, 2> radii_in_sides = {4, 8};
 
-std::size_t occupied_cubes(const PointCloud& cloud, double side_m) {
-  PointCloud bare;
-  bare.points = cloud.points;
-  return voxel_grid(bare, side_m).size();
+// At most so many of the cloud's finite points, spread over it: enough to count cubes by.
+PointCloud thin_sample(const PointCloud& cloud) {
+  const std::vector<std::uint32_t> finite = finite_points(cloud);
+  const std::size_t stride = std::max<std::size_t>(1, finite.size() / counted_points);
+  PointCloud few;
+  for (std::size_t i = 0; i < finite.size(); i += stride)
+    few.points.push_back(cloud.points[finite[i]]);
+  return few;
 }
 
-// The side at which the cloud fills the wanted number of cubes, or all its points lie in different
-// ones: cubes of a surface grow in number as side^-2.
+// The side at which the cloud fills the wanted number of cubes, or most of its points lie in
+// different ones: cubes of a surface grow in number as side^-2.
 double side_of(const PointCloud& cloud) {
-  const PointCloud finite = subset(cloud, finite_points(cloud));
-  const Bounds box = bounds_of(finite.points);
+  const PointCloud few = thin_sample(cloud);
+  const Bounds box = bounds_of(few.points);
   if (box.isEmpty() || !(box.diagonal().norm() > 0)) return 0;
+  const double wanted = std::min(wanted_cubes, 0.75 * static_cast<double>(few.size()));
   double side_m = box.diagonal().norm() / std::sqrt(wanted_cubes);
-  for (int round = 0; round < 4; ++round) {
-    const double cubes = static_cast<double>(occupied_cubes(finite, side_m));
-    const double wanted = std::min(wanted_cubes, 0.75 * static_cast<double>(finite.size()));
-    side_m *= std::sqrt(std::max(cubes, 1.0) / std::max(wanted, 1.0));
-  }
+  for (int round = 0; round < 4; ++round)
+    side_m *= std::sqrt(static_cast<double>(voxel_grid(few, side_m).size()) / wanted);
   return side_m;
 }
 

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <string>
 
 #include "libscan/align/consensus.h"
 #include "libscan/align/descriptor_matches.h"
+#include "libscan/align/exploration.h"
 #include "libscan/align/icp.h"
 #include "libscan/align/pose_judge.h"
 #include "libscan/core/error.h"
@@ -19,12 +22,13 @@ namespace {
 
 constexpr std::size_t least_points = 30;
 constexpr std::size_t most_matches = 2000;
+constexpr std::size_t most_explored = 64;
 // In sides of a cube. Thinned points of two scans lie up to a cube apart on the same surface.
 constexpr double noise_in_sides = 1.5, least_distance_in_sides = 5, same_pose_in_sides = 3;
 constexpr double slide_in_sides = 5;
 constexpr double normal_cosine = 0.3;
 // A pose of this share of the best one's merit explains the data as well.
-constexpr double equal_merit = 0.7;
+constexpr double equal_merit = 0.85;
 
 std::vector<Pose> proposed(const ScanFeatures& source, const ScanFeatures& target) {
   std::vector<Correspondence> correspondences;
@@ -32,10 +36,12 @@ std::vector<Pose> proposed(const ScanFeatures& source, const ScanFeatures& targe
     correspondences.push_back({source.cloud.points[match.source], target.cloud.points[match.target],
                                source.cloud.normals[match.source],
                                target.cloud.normals[match.target]});
-  const Consensus consensus =
-      find_consensus(correspondences, {.noise_m = noise_in_sides * source.side_m,
-                                       .least_distance_m = least_distance_in_sides * source.side_m,
-                                       .cosine = normal_cosine});
+  const Consensus consensus = find_consensus(
+      correspondences, {.noise_m = noise_in_sides * source.side_m,
+                        .least_distance_m = least_distance_in_sides * source.side_m,
+                        .cosine = normal_cosine,
+                        // The surfaces judge more sharply than counts of correspondences do.
+                        .most_by_chance = std::numeric_limits<double>::infinity()});
   std::vector<Pose> poses;
   for (const ConsensusPose& pose : consensus.poses) poses.push_back(pose.target_from_source);
   return poses;
@@ -95,12 +101,16 @@ bool believed(const GlobalHypothesis& hypothesis, const GlobalOptions& options) 
   return hypothesis.trust >= options.least_trust;
 }
 
-GlobalOutcome outcome_of(const std::vector<GlobalHypothesis>& best_first,
-                         const GlobalOptions& options) {
+// A slide that leaves the points within what the judge tolerates, or another pose that meets as
+// much.
+GlobalOutcome outcome_of(const std::vector<GlobalHypothesis>& best_first, const PoseJudge& judge,
+                         double slide_m, const GlobalOptions& options) {
   if (best_first.empty() || !believed(best_first[0], options)) return GlobalOutcome::no_overlap;
+  const double resisted_m = slide_m * judge.least_resistance(best_first[0].target_from_source);
+  const bool free = resisted_m < judge.tolerance_m();
   const bool rival = best_first.size() > 1 && believed(best_first[1], options) &&
                      merit(best_first[1]) >= equal_merit * merit(best_first[0]);
-  return rival ? GlobalOutcome::ambiguous : GlobalOutcome::aligned;
+  return free || rival ? GlobalOutcome::ambiguous : GlobalOutcome::aligned;
 }
 
 }  // namespace
@@ -130,19 +140,20 @@ GlobalResult align_globally(const ScanFeatures& source, const ScanFeatures& targ
                                     " m and " + std::to_string(target.side_m) +
                                     " m, must be equal");
   const PoseJudge judge(source, target);
-  const std::vector<Pose> poses = proposed(source, target);
-  result.hypotheses = different(judged(judge, poses), source);
-  if (!result.hypotheses.empty() && believed(result.hypotheses[0], options)) {
-    const Pose best = result.hypotheses[0].target_from_source;
-    auto slid = judged(judge, judge.slid(best, slide_in_sides * source.side_m));
-    std::move(slid.begin(), slid.end(), std::back_inserter(result.hypotheses));
-    result.hypotheses = different(std::move(result.hypotheses), source);
-  }
-  if (result.hypotheses.size() > options.most_hypotheses)
-    result.hypotheses.resize(options.most_hypotheses);
-  for (GlobalHypothesis& hypothesis : result.hypotheses)
+  const double slide_m = slide_in_sides * source.side_m;
+  std::vector<GlobalHypothesis>& found = result.hypotheses;
+  const auto add = [&](const std::vector<Pose>& proposals) {
+    auto more = judged(judge, proposals);
+    std::move(more.begin(), more.end(), std::back_inserter(found));
+    found = different(std::move(found), source);
+    return !found.empty() && believed(found[0], options);
+  };
+  if (add(proposed(source, target)) || add(explore_rotations(source, target, most_explored)))
+    add(judge.slid(found[0].target_from_source, slide_m));
+  if (found.size() > options.most_hypotheses) found.resize(options.most_hypotheses);
+  result.outcome = outcome_of(found, judge, slide_m, options);
+  for (GlobalHypothesis& hypothesis : found)
     if (believed(hypothesis, options)) refine(hypothesis, source, target);
-  result.outcome = outcome_of(result.hypotheses, options);
   result.cost.seconds = watch.seconds();
   return result;
 }

@@ -17,7 +17,7 @@ namespace scan {
 
 enum class GlobalOutcome {
   aligned,         // one pose stands out
-  ambiguous,       // several poses explain the data equally well, listed first
+  ambiguous,       // several poses explain the data equally well, listed first; or one may slide
   no_overlap,      // no pose stands out from chance; those of the list are the best of bad ones
   too_few_points,  // a cloud has too few points for descriptors
 };

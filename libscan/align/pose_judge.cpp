@@ -171,6 +171,19 @@ std::vector<Pose> PoseJudge::slid(const Pose& target_from_source, double distanc
   return poses;
 }
 
+double PoseJudge::tolerance_m() const {
+  return meet_plane_in_sides * source_->features.side_m;
+}
+
+double PoseJudge::least_resistance(const Pose& target_from_source) const {
+  const Eigen::Vector3d centre = target_from_source * source_->centre;
+  const Pairs sum = pairs(target_from_source, source_->features.side_m, centre);
+  if (sum.count < least_pairs) return 0;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(sum.information, sum.metric,
+                                                                 Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
+}
+
 PoseVerdict PoseJudge::judge(const Pose& target_from_source) const {
   const Tally forth = tally(*source_, *target_, target_from_source);
   const Tally back = tally(*target_, *source_, target_from_source.inverse());
@@ -181,11 +194,10 @@ PoseVerdict PoseJudge::judge(const Pose& target_from_source) const {
   const double met = forth.met + back.met;
   if (met == 0) return verdict;
   const double conflicts = forth.conflicts + back.conflicts;
-  const double tolerance_m = meet_plane_in_sides * source_->features.side_m;
   const double variance_m2 = (forth.squares_m2 + back.squares_m2) / met;
   verdict.conflict = conflicts / (met + conflicts);
   verdict.rms_m = std::sqrt(variance_m2);
-  const double close = std::max(0.0, 1 - 3 * variance_m2 / (tolerance_m * tolerance_m));
+  const double close = std::max(0.0, 1 - 3 * variance_m2 / (tolerance_m() * tolerance_m()));
   verdict.trust = close * met / (met + conflicts + doubt);
   return verdict;
 }

@@ -39,6 +39,13 @@ class PoseJudge {
   // as well, was free to slide.
   std::vector<Pose> slid(const Pose& target_from_source, double distance_m) const;
 
+  // How far from the other's plane a point may be and still lie on it.
+  double tolerance_m() const;
+
+  // By how much, of each metre that the points move (root mean square) along the motion that the
+  // surfaces resist least, they leave the other's planes: 0 for a free motion, at most 1.
+  double least_resistance(const Pose& target_from_source) const;
+
  private:
   struct Side;
   struct Pairs;
