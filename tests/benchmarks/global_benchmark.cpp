@@ -33,6 +33,7 @@ void print(const std::string& name, const Count& count) {
   std::printf("%-26s %5d %6d %6d %10d %6d %9.0f %9.0f\n", name.c_str(), count.pairs, count.right,
               count.wrong, count.ambiguous, count.none, 1e3 * count.features_seconds / count.pairs,
               1e3 * (count.seconds - count.features_seconds) / count.pairs);
+  std::fflush(stdout);
 }
 
 // Right: within a side of the cubes, about 1/50 of the extent.
