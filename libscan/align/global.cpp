@@ -89,12 +89,14 @@ std::vector<GlobalHypothesis> different(std::vector<GlobalHypothesis> all,
   return kept;
 }
 
-// The step of icp from a settled pose; the only place that depends on it.
+// The step of icp from a settled pose, unless it leads elsewhere; the only place that depends on
+// it.
 void refine(GlobalHypothesis& hypothesis, const ScanFeatures& source, const ScanFeatures& target) {
   const IcpResult refined = icp(source.cloud, target.cloud, hypothesis.target_from_source,
                                 {.max_pair_distance_m = source.side_m});
-  if (refined.stop == Stop::too_few_points || refined.stop == Stop::no_correspondences) return;
-  hypothesis.target_from_source = refined.target_from_source;
+  if (apart_m(source.cloud, refined.target_from_source, hypothesis.target_from_source) <
+      same_pose_in_sides * source.side_m)
+    hypothesis.target_from_source = refined.target_from_source;
 }
 
 bool believed(const GlobalHypothesis& hypothesis, const GlobalOptions& options) {
