@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
-#include "tests/search/clouds.h"
 #include "libscan/core/parallel.h"
+#include "tests/search/clouds.h"
 
 namespace scan {
 namespace {
@@ -153,6 +153,25 @@ TEST_P(EachMethod, FindsAllWithinARadiusAndOnIt) {
   });
 }
 
+TEST_P(EachMethod, FindsNothingForAQueryThatIsNotFinite) {
+  const AnySearch any = make_search(GetParam(), uniform_cloud(100));
+  for (const double bad : {std::nan(""), unlimited_m, -unlimited_m})
+    for (int axis = 0; axis < 3; ++axis) {
+      Eigen::Vector3d query(0.1, 0.2, 0.3);
+      query[axis] = bad;
+      std::visit(
+          [&](const auto& search) {
+            Answer found = {{7, 7}};
+            EXPECT_FALSE(search.nearest(query));
+            search.k_nearest(query, 3, found);
+            EXPECT_TRUE(found.empty());
+            search.within(query, unlimited_m, found);
+            EXPECT_TRUE(found.empty());
+          },
+          any);
+    }
+}
+
 TEST_P(EachMethod, ResolvesPointsThatAreOneInFloat) {
   // A million steps of 1e-9 m beside a point a kilometre off: 1e-9 / 1e3 is far below float's 6e-8.
   Points points = {{1000, 0, 0}};
@@ -163,6 +182,31 @@ TEST_P(EachMethod, ResolvesPointsThatAreOneInFloat) {
     const auto found = std::visit([&](const auto& search) { return search.nearest(query); }, any);
     ASSERT_TRUE(found);
     EXPECT_EQ(*found, sorted_by_distance(points, query).front());
+  }
+}
+
+// Two groups of points on two sides of the query, in leaves of their own: the nearest ones differ
+// in distance by 1e-8, less than float tells, so either group may seem to have the nearest.
+TEST_P(EachMethod, DecidesBetweenTwoSidesThatAreOneInFloat) {
+  RandomStream random(14, 0, 0);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Eigen::Vector3d query = in_cube(random), side = normal_vector(random).normalized();
+    Points points = {query + Eigen::Vector3d(5, 4, 3)};  // so that rounding is not symmetrical
+    for (int i = 0; i < 20; ++i)
+      for (const double sign : {-1.0, 1.0}) {
+        const double distance = i == 0 ? 1 + 1e-8 * random.uniform() : 1.2 + 0.01 * i;
+        points.push_back(query + sign * distance * side);
+      }
+    const Answer expected = sorted_by_distance(points, query);
+    const AnySearch any = make_search(GetParam(), points);
+    std::visit(
+        [&](const auto& search) {
+          EXPECT_EQ(search.nearest(query), expected.front());
+          Answer found;
+          search.k_nearest(query, 1, found);
+          EXPECT_EQ(found, first(expected, 1));
+        },
+        any);
   }
 }
 
