@@ -10,6 +10,7 @@
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "tools/commands.h"
+#include "tools/global_guesses.h"
 #include "tools/inputs.h"
 
 namespace scan {
@@ -20,6 +21,7 @@ struct Arguments {
   std::string method = "point-to-plane";
   std::string search = "kd-tree";
   std::string init;
+  bool global = false;
   double max_distance_m = 0;
   double thin_m = 0;
 };
@@ -77,18 +79,83 @@ void write_results(const std::filesystem::path& folder, const std::vector<std::s
   write_scan(folder / "aligned.ply", Scan{.name = "aligned", .cloud = joined(scans, poses)});
 }
 
-int align_files(const Arguments& arguments, Console& console) {
-  const auto [inputs, output] = split_output(arguments.paths);
-  const auto scans = read_scans_with_normals(inputs, console);
-  const auto first = guesses(arguments, inputs, scans);
+MultiviewResult align_from_guesses(const std::vector<Scan>& scans, const std::vector<Pose>& first,
+                                   const MultiviewOptions& options, Console& console) {
   std::vector<PointCloud> clouds;
   clouds.reserve(scans.size());
   for (const Scan& scan : scans) clouds.push_back(scan.cloud);
-
-  const MultiviewOptions options = options_from(arguments);
-  const MultiviewResult result = align_scans(clouds, first, options, console.progress());
+  MultiviewResult result = align_scans(clouds, first, options, console.progress());
   console.time("align", result.cost.seconds);
-  const auto json = alignment_json(inputs, result, options.icp);
+  return result;
+}
+
+// Only scans that were tied together are refined together: the others have no guess to start from.
+MultiviewResult align_tied(const std::vector<Scan>& scans, const std::vector<GlobalGuess>& found,
+                           const MultiviewOptions& options, Console& console) {
+  std::vector<std::size_t> tied;
+  std::vector<Scan> some;
+  std::vector<Pose> first;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (found[i].trust == 0) continue;
+    tied.push_back(i);
+    some.push_back(scans[i]);
+    first.push_back(found[i].world_from_scan);
+  }
+  MultiviewResult part = align_from_guesses(some, first, options, console);
+  MultiviewResult result = part;
+  result.scans.assign(scans.size(), {});
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    if (found[i].outcome == GlobalOutcome::no_overlap)
+      result.scans[i].stop = Stop::no_correspondences;
+  for (std::size_t k = 0; k < tied.size(); ++k) result.scans[tied[k]] = std::move(part.scans[k]);
+  if (tied.size() < scans.size()) result.stop = Stop::no_correspondences;
+  return result;
+}
+
+void tell_of_guess(const std::string& input, const GlobalGuess& guess, Console& console) {
+  if (guess.outcome == GlobalOutcome::ambiguous)
+    console.warn(input + ": several poses explain it equally well; one of them was taken");
+  else if (guess.outcome != GlobalOutcome::aligned)
+    console.warn(input + ": " + std::string(name_of(guess.outcome)) + " with the other scans");
+}
+
+struct Aligned {
+  MultiviewResult result;
+  nlohmann::ordered_json json;
+};
+
+Aligned align_without_guess(const std::vector<std::string>& inputs, const std::vector<Scan>& scans,
+                            const MultiviewOptions& options, Console& console) {
+  const Stopwatch watch;
+  const std::vector<GlobalGuess> found = global_guesses(scans, console.progress());
+  console.time("global", watch.seconds());
+  Aligned aligned{align_tied(scans, found, options, console), {}};
+  aligned.json = alignment_json(inputs, aligned.result, options.icp);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    tell_of_guess(inputs[i], found[i], console);
+    aligned.json["scans"][i]["global"] = name_of(found[i].outcome);
+    aligned.json["scans"][i]["trust"] = found[i].trust;
+  }
+  return aligned;
+}
+
+Aligned align(const Arguments& arguments, const std::vector<std::string>& inputs,
+              const std::vector<Scan>& scans, Console& console) {
+  const MultiviewOptions options = options_from(arguments);
+  if (arguments.global) return align_without_guess(inputs, scans, options, console);
+  const std::vector<Pose> first = guesses(arguments, inputs, scans);
+  MultiviewResult result = align_from_guesses(scans, first, options, console);
+  nlohmann::ordered_json json = alignment_json(inputs, result, options.icp);
+  return {std::move(result), std::move(json)};
+}
+
+int align_files(const Arguments& arguments, Console& console) {
+  const auto [inputs, output] = split_output(arguments.paths);
+  if (arguments.global && !arguments.init.empty())
+    throw Error(Trouble::usage, "--global: finds poses without a guess, --init gives one",
+                "leave one of them out");
+  const auto scans = read_scans_with_normals(inputs, console);
+  const auto [result, json] = align(arguments, inputs, scans, console);
   write_results(output, inputs, scans, result, json);
 
   bool complete = true;
@@ -117,6 +184,8 @@ Action align_command(CommandLine& line) {
               {"kd-tree", "octree", "brute-force", "flann", "pcl-octree"}, "neighbour search");
   line.option("--init", arguments->init,
               "poses to start from (TUM, KITTI, 4x4, Stanford .conf, alignment.json)");
+  line.flag("--global", arguments->global,
+            "find the poses without any guess; the first scan fixes the world");
   line.length("--max-distance", arguments->max_distance_m,
               "pairs farther apart do not count; found from the data if not given");
   line.length("--thin", arguments->thin_m,

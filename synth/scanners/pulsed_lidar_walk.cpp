@@ -32,7 +32,7 @@ std::vector<DelayedPulse> delayed_pulses(const RangeWalk& walk, double pulse_sig
 double delay_s(std::span<const DelayedPulse> pulses, double time_s) {
   const auto pulse =
       std::lower_bound(pulses.begin(), pulses.end(), time_s,
-                       [](const DelayedPulse& pulse, double time) { return pulse.end_s < time; });
+                       [](const DelayedPulse& p, double time) { return p.end_s < time; });
   return pulse == pulses.end() ? 0 : pulse->late_s;
 }
 

@@ -137,6 +137,38 @@ TEST(BadInput, ScansWithoutOverlapAreNotCalledAligned) {
   EXPECT_NE(alignment.find("no correspondences"), std::string::npos) << alignment;
 }
 
+// A sphere and a piece of a saddle: nothing ties them. What is known is still written.
+TEST(BadInput, ScansThatShareNothingAreNotTiedGlobally) {
+  const Folder folder;
+  const std::string a = (folder / "a.ply").string(), b = (folder / "b.ply").string();
+  spill(a, sphere_ply(2000, 0));
+  std::string saddle =
+      "ply\nformat ascii 1.0\nelement vertex 2500\nproperty double x\nproperty double y\n"
+      "property double z\nend_header\n";
+  for (int i = 0; i < 2500; ++i) {
+    const double x = 0.04 * (i % 50) - 1, y = 0.04 * (i / 50) - 1;
+    saddle += std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(x * y - 3) + "\n";
+  }
+  spill(b, saddle);
+  const Outcome outcome = run_scan({"align", a, b, (folder / "aligned").string(), "--global"});
+  EXPECT_EQ(outcome.exit_code, computation) << outcome.err;
+  const std::string alignment = slurp(folder / "aligned/alignment.json");
+  EXPECT_NE(alignment.find("\"global\": \"no overlap\""), std::string::npos) << alignment;
+  EXPECT_NE(alignment.find("no correspondences"), std::string::npos) << alignment;
+}
+
+// Two spheres fit in any rotation.
+TEST(BadInput, AnAmbiguousTieIsSaidToBe) {
+  const Folder folder;
+  const std::string a = (folder / "a.ply").string(), b = (folder / "b.ply").string();
+  spill(a, sphere_ply(2000, 0));
+  spill(b, sphere_ply(1800, 100));
+  const Outcome outcome = run_scan({"align", a, b, (folder / "aligned").string(), "--global"});
+  EXPECT_NE(outcome.err.find("several poses"), std::string::npos) << outcome.err;
+  EXPECT_NE(slurp(folder / "aligned/alignment.json").find("\"global\": \"ambiguous\""),
+            std::string::npos);
+}
+
 TEST(BadInput, OutputThatCannotBeWrittenIsFoundBeforeTheWork) {
   const Folder folder;
   const std::string points = (folder / "points.ply").string();
@@ -155,6 +187,8 @@ TEST(Usage, MistypedWordsGetAHint) {
                  "--trim");
   expect_failure(run_scan({"reconstruct", "a.ply", "b.ply", "--depth", "99"}), usage, "99");
   expect_failure(run_scan({"align", "a.ply", "b.ply", "--method", "magic"}), usage, "magic");
+  expect_failure(run_scan({"align", "a.ply", "b.ply", "out", "--global", "--init", "p.txt"}), usage,
+                 "--init");
   expect_failure(run_scan({}), usage, "scan --help");
 }
 
