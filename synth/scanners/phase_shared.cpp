@@ -63,7 +63,6 @@ class SharedPaths {
   }
   void draw(const Part& part, std::uint64_t address, int from, int to);
   PatchFit fit(const Part& part, const PatchBasis& basis) const;
-  double square_of_own_paths(const Part& part, const PatchFit& fit) const;
   void finish(const Part& part, const PatchFit& fit, Eigen::Index functions, const Misfit& misfit);
   void quarter(const Part& part);
 
@@ -113,12 +112,6 @@ PatchFit SharedPaths::fit(const Part& part, const PatchBasis& basis) const {
                                       static_cast<Eigen::Index>(signals_)) /
                part.per_stream;
   return fit_patch(basis, means);
-}
-
-// What a pixel's own paths would leave, as many as it may have.
-double SharedPaths::square_of_own_paths(const Part& part, const PatchFit& fit) const {
-  return fit.pixel_chance * patch_streams * part.per_stream / most_per_pixel /
-         mean_unit_e2(readings_, pixels_of(part));
 }
 
 // Adds what the first functions fit to the light of the part's pixels.
@@ -183,8 +176,8 @@ void SharedPaths::solve(Part part) {
                          [](const Misfit& a, const Misfit& b) { return a.square() < b.square(); });
     const bool is_smallest = part.side_px <= least_side_px;
     if (!is_smallest && misfits.back().is_stiff(goal)) return quarter(part);
-    const double alone = is_smallest ? square_of_own_paths(part, fitted) : 0;
-    if (best->square() <= std::max(goal, alone) || 2 * patch_streams * wanted > most_per_pixel)
+    if (is_smallest && misfits.back().is_stiff(goal)) return;
+    if (best->square() <= goal || 2 * patch_streams * wanted > most_per_pixel)
       return finish(part, fitted, basis.count[static_cast<std::size_t>(best - misfits.begin()) + 1],
                     *best);
   }

@@ -10,8 +10,8 @@
 // what the highest degree adds tells what the fit misses, and so do residuals beyond chance. The
 // degree is the one with the least of both together; paths are doubled until that meets the goal of
 // estimate_taps. Where even the highest degree is too stiff the patch is quartered, down to 8 x 8
-// pixels, where a fit is done as soon as it is as good as pixels' own paths may be. The error is
-// common to neighbours: means over a patch keep it.
+// pixels; where it still is, as close to an edge where walls meet, pixels take paths of their own.
+// The error is common to neighbours: means over a patch keep it.
 #pragma once
 
 #include "synth/scanners/phase_misfit.h"
@@ -27,8 +27,8 @@ struct SharedPixel {
   Estimate taps;
 };
 
-// Adds indirect light to the direct light of the patch's pixels. Left out are parts of fewer than
-// 9 pixels, for which paths of their own are as well.
+// Adds indirect light to the direct light of the patch's pixels. Left out are parts that no fit
+// follows and those of fewer than 9 pixels, for which paths of their own are as well.
 std::vector<SharedPixel> add_shared_light(const PathView& view, std::span<const Tone> tones,
                                           const Patch& patch, const RayOf& ray,
                                           const LightOf& light_of);
