@@ -31,6 +31,20 @@ void check_material(const Material& material, const std::string& place) {
   check(*material.interior, place + "/interior");
 }
 
+void check_texture_corners(const Object& object, std::size_t triangles, const Material& material,
+                           const std::string& place) {
+  const std::vector<TextureCorners>& all = object.texture_corners;
+  if (!all.empty() && all.size() != triangles)
+    refuse(place + "/texture_corners has " + std::to_string(all.size()) + " entries, must have " +
+           std::to_string(triangles));
+  for (const TextureCorners& corners : all)
+    for (const Eigen::Vector2d& corner : corners)
+      if (!corner.allFinite()) refuse(place + "/texture_corners is not finite");
+  if (all.empty() && std::holds_alternative<MeshTexture>(material.texture))
+    refuse(place + ": its material has a picture without a width, which only a mesh with texture " +
+           "coordinates takes");
+}
+
 void check_object(const Scene& scene, const Object& object, const std::string& place) {
   check_pose(object.world_from_object, place + "/world_from_object");
   if (object.material < 0 || object.material >= static_cast<int>(scene.materials.size()))
@@ -42,6 +56,8 @@ void check_object(const Scene& scene, const Object& object, const std::string& p
     throw Error(error.trouble(), place + ": " + error.what(), error.hint());
   }
   const auto* mesh = std::get_if<Mesh>(&object.geometry);
+  check_texture_corners(object, mesh ? mesh->triangles.size() : 0, scene.materials[object.material],
+                        place);
   if (!mesh) return;
   if (mesh->empty()) refuse(place + ": mesh has no triangles");
   if (!std::holds_alternative<Dielectric>(scene.materials[object.material].bsdf)) return;
@@ -106,14 +122,16 @@ TrueSurface true_surface(const Scene& scene) {
   return surface;
 }
 
-Bsdf bsdf_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world) {
+Bsdf bsdf_at(const Scene& scene, int object, std::uint32_t triangle,
+             const Eigen::Vector3d& x_in_world) {
   const Object& seen = scene.objects[object];
   const Material& material = scene.materials[seen.material];
   Bsdf bsdf = material.bsdf;
   if (std::holds_alternative<PlainTexture>(material.texture)) return bsdf;
   const Eigen::Vector3d x_in_object = seen.world_from_object.linear().transpose() *
                                       (x_in_world - seen.world_from_object.translation());
-  const double factor = texture_factor(material.texture, x_in_object);
+  const double factor =
+      texture_factor(material.texture, texture_point(seen, triangle, x_in_object));
   std::visit(
       [&](auto& kind) {
         if constexpr (requires { kind.albedo; }) kind.albedo *= factor;

@@ -40,7 +40,11 @@ struct ImageTexture {
   Image<float> factors;
   double width_m = 0.1;  // of the whole picture; its pixels are square
 };
-using Texture = std::variant<PlainTexture, CheckerTexture, NoiseTexture, ImageTexture>;
+// A picture of factors laid on a mesh by its texture coordinates; bilinear, repeated.
+struct MeshTexture {
+  Image<float> factors;
+};
+using Texture = std::variant<PlainTexture, CheckerTexture, NoiseTexture, ImageTexture, MeshTexture>;
 
 // An object's surface and what it encloses. A texture multiplies the albedo of a Lambert,
 // Oren-Nayar or plastic surface. `interior` fills an object with a dielectric surface: absorbing
@@ -60,6 +64,8 @@ struct Object {
   Pose world_from_object = Pose::Identity();
   std::variant<Shape, Mesh> geometry;  // object frame, metres
   int material = 0;                    // index into Scene::materials
+  // Where a MeshTexture's picture lies, per triangle of a mesh; else empty.
+  std::vector<TextureCorners> texture_corners;
 };
 
 struct Scene {
@@ -75,8 +81,10 @@ void check(const Scene& scene);
 
 TrueSurface true_surface(const Scene& scene);  // in the world frame
 
-// How the object's surface reflects at a point (world frame), its texture applied.
-Bsdf bsdf_at(const Scene& scene, int object, const Eigen::Vector3d& x_in_world);
+// How the object's surface reflects at a point (world frame) of a triangle (0 if it is no mesh),
+// its texture applied.
+Bsdf bsdf_at(const Scene& scene, int object, std::uint32_t triangle,
+             const Eigen::Vector3d& x_in_world);
 
 // The scene as it is rendered with those effects: without refraction no object with a dielectric
 // surface and no scattering inside; without subsurface scattering translucent bodies are Lambert

@@ -22,6 +22,11 @@ void check_period(const std::string& place, double period_m) {
               place + "/period_m is " + std::to_string(period_m) + ", must be positive");
 }
 
+void check_factors(const Image<float>& factors, const std::string& place) {
+  if (factors.empty()) throw Error(Trouble::input, place + "/image has no pixels");
+  for (const float value : factors.pixels) check_range(place + "/image", value, 0, 1);
+}
+
 void check_texture(const PlainTexture&, const std::string&) {}
 void check_texture(const CheckerTexture& checker, const std::string& place) {
   check_period(place, checker.period_m);
@@ -34,11 +39,14 @@ void check_texture(const NoiseTexture& noise, const std::string& place) {
 }
 
 void check_texture(const ImageTexture& image, const std::string& place) {
-  if (image.factors.empty()) throw Error(Trouble::input, place + "/image has no pixels");
   if (!(std::isfinite(image.width_m) && image.width_m > 0))
     throw Error(Trouble::input,
                 place + "/width_m is " + std::to_string(image.width_m) + ", must be positive");
-  for (const float value : image.factors.pixels) check_range(place + "/image", value, 0, 1);
+  check_factors(image.factors, place);
+}
+
+void check_texture(const MeshTexture& picture, const std::string& place) {
+  check_factors(picture.factors, place);
 }
 
 double lattice_value(std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -50,19 +58,19 @@ double blend(double t) {
   return t * t * t * (t * (6 * t - 15) + 10);
 }
 
-double factor(const PlainTexture&, const Eigen::Vector3d&) {
+double factor(const PlainTexture&, const TexturePoint&) {
   return 1;
 }
 
-double factor(const CheckerTexture& checker, const Eigen::Vector3d& x) {
+double factor(const CheckerTexture& checker, const TexturePoint& at) {
   const Eigen::Vector3d cell =
-      (x * (2 / checker.period_m)).array().round();  // dark and light: a period
+      (at.x_in_object * (2 / checker.period_m)).array().round();  // dark and light: a period
   return std::fmod(std::abs(cell.sum()), 2) == 0 ? 1 : 1 - checker.contrast;
 }
 
-double factor(const NoiseTexture& noise, const Eigen::Vector3d& x) {
+double factor(const NoiseTexture& noise, const TexturePoint& at) {
   double sum = 0, weights = 0, weight = 1;
-  Eigen::Vector3d place = x / noise.period_m;
+  Eigen::Vector3d place = at.x_in_object / noise.period_m;
   for (int octave = 0; octave < noise.octaves; ++octave) {
     sum += weight * value_noise(place);
     weights += weight;
@@ -77,11 +85,8 @@ int wrapped(double index, int count) {
   return static_cast<int>(index - std::floor(index / count) * count) % count;
 }
 
-double factor(const ImageTexture& image, const Eigen::Vector3d& x) {
-  const Image<float>& factors = image.factors;
-  const double pixels_per_m = factors.width / image.width_m;
-  const double across = x.x() * pixels_per_m + (factors.width - 1) / 2.0;
-  const double down = (factors.height - 1) / 2.0 - x.y() * pixels_per_m;
+// Between the centres of pixels, (0, 0) that of the first; columns and rows repeat.
+double bilinear(const Image<float>& factors, double across, double down) {
   const double column = std::floor(across), row = std::floor(down);
   const int left = wrapped(column, factors.width), right = wrapped(column + 1, factors.width);
   const int top = wrapped(row, factors.height), bottom = wrapped(row + 1, factors.height);
@@ -90,14 +95,43 @@ double factor(const ImageTexture& image, const Eigen::Vector3d& x) {
          v * ((1 - u) * factors(left, bottom) + u * factors(right, bottom));
 }
 
+double factor(const ImageTexture& image, const TexturePoint& at) {
+  const Eigen::Vector3d& x = at.x_in_object;
+  const Image<float>& factors = image.factors;
+  const double pixels_per_m = factors.width / image.width_m;
+  return bilinear(factors, x.x() * pixels_per_m + (factors.width - 1) / 2.0,
+                  (factors.height - 1) / 2.0 - x.y() * pixels_per_m);
+}
+
+double factor(const MeshTexture& picture, const TexturePoint& at) {
+  return bilinear(picture.factors, at.place.x() * picture.factors.width - 0.5,
+                  at.place.y() * picture.factors.height - 0.5);
+}
+
 }  // namespace
 
 void check(const Texture& texture, const std::string& place) {
   std::visit([&](const auto& t) { check_texture(t, place); }, texture);
 }
 
-double texture_factor(const Texture& texture, const Eigen::Vector3d& x_in_object) {
-  return std::visit([&](const auto& t) { return factor(t, x_in_object); }, texture);
+TexturePoint texture_point(const Object& object, std::uint32_t triangle,
+                           const Eigen::Vector3d& x_in_object) {
+  TexturePoint at{x_in_object};
+  if (object.texture_corners.empty()) return at;
+  const Mesh& mesh = std::get<Mesh>(object.geometry);
+  const auto& [ia, ib, ic] = mesh.triangles[triangle];
+  const Eigen::Vector3d &a = mesh.vertices[ia], &b = mesh.vertices[ib], &c = mesh.vertices[ic];
+  const Eigen::Vector3d twice_area = area_vector(mesh, mesh.triangles[triangle]);
+  const auto share = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    return (to - from).cross(x_in_object - from).dot(twice_area) / twice_area.squaredNorm();
+  };
+  const TextureCorners& corners = object.texture_corners[triangle];
+  at.place = share(b, c) * corners[0] + share(c, a) * corners[1] + share(a, b) * corners[2];
+  return at;
+}
+
+double texture_factor(const Texture& texture, const TexturePoint& at) {
+  return std::visit([&](const auto& t) { return factor(t, at); }, texture);
 }
 
 double value_noise(const Eigen::Vector3d& x) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
+#include "libscan/core/nearest_word.h"
 #include "libscan/io/image_file.h"
 #include "synth/bsdf/fresnel.h"
 #include "synth/gltf_material.h"
@@ -87,42 +88,46 @@ Image<std::uint8_t> read_grey_at(const std::filesystem::path& file, const std::s
   }
 }
 
-synth::ImageTexture read_picture(JsonReader reader, const std::filesystem::path& folder,
-                                 std::filesystem::path& picture) {
+// Upon a plane of the object by its width, else laid on the mesh by its texture coordinates.
+synth::Texture read_picture(JsonReader reader, const std::filesystem::path& folder,
+                            std::filesystem::path& picture) {
   picture = std::filesystem::absolute(folder / reader.text("file")).lexically_normal();
-  synth::ImageTexture texture{.factors = {}, .width_m = reader.length_m("width")};
   const Image<std::uint8_t> grey = read_grey_at(picture, reader.place());
-  texture.factors = Image<float>(grey.width, grey.height);
+  Image<float> factors(grey.width, grey.height);
   for (std::size_t i = 0; i < grey.pixels.size(); ++i)
-    texture.factors.pixels[i] = static_cast<float>(grey.pixels[i]) / 255;
+    factors.pixels[i] = static_cast<float>(grey.pixels[i]) / 255;
+  synth::Texture texture = synth::MeshTexture{factors};
+  if (reader.has_quantity("width"))
+    texture =
+        synth::ImageTexture{.factors = std::move(factors), .width_m = reader.length_m("width")};
   reader.finish();
   return texture;
 }
 
-synth::Texture read_texture(JsonReader reader, const std::filesystem::path& folder,
-                            std::filesystem::path& picture) {
-  if (reader.has("picture")) {
-    synth::Texture texture = read_picture(reader.object("picture"), folder, picture);
-    reader.finish();
-    return texture;
-  }
-  if (reader.has("checker")) {
-    JsonReader inner = reader.object("checker");
-    synth::CheckerTexture checker;
-    checker.period_m = inner.length_m("period", checker.period_m);
-    checker.contrast = inner.number("contrast", checker.contrast);
-    inner.finish();
-    reader.finish();
-    return checker;
-  }
-  JsonReader inner = reader.object("noise");
+synth::CheckerTexture read_checker(JsonReader reader) {
+  synth::CheckerTexture checker;
+  checker.period_m = reader.length_m("period", checker.period_m);
+  checker.contrast = reader.number("contrast", checker.contrast);
+  reader.finish();
+  return checker;
+}
+
+synth::NoiseTexture read_noise(JsonReader reader) {
   synth::NoiseTexture noise;
-  noise.period_m = inner.length_m("period", noise.period_m);
-  noise.octaves = static_cast<int>(inner.integer("octaves", noise.octaves));
-  noise.contrast = inner.number("contrast", noise.contrast);
-  inner.finish();
+  noise.period_m = reader.length_m("period", noise.period_m);
+  noise.octaves = static_cast<int>(reader.integer("octaves", noise.octaves));
+  noise.contrast = reader.number("contrast", noise.contrast);
   reader.finish();
   return noise;
+}
+
+synth::Texture read_texture(JsonReader reader, const std::filesystem::path& folder,
+                            std::filesystem::path& picture) {
+  const std::string kind = reader.one_of({"picture", "checker", "noise"});
+  reader.finish();
+  if (kind == "picture") return read_picture(reader.object(kind), folder, picture);
+  if (kind == "checker") return read_checker(reader.object(kind));
+  return read_noise(reader.object(kind));
 }
 
 struct TextureWriter {
@@ -133,6 +138,9 @@ struct TextureWriter {
   }
   ordered_json operator()(const synth::ImageTexture& t) const {
     return {{"picture", {{"file", picture.string()}, {"width_m", t.width_m}}}};
+  }
+  ordered_json operator()(const synth::MeshTexture&) const {
+    return {{"picture", {{"file", picture.string()}}}};
   }
   ordered_json operator()(const synth::NoiseTexture& t) const {
     return {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
+#include "libscan/core/nearest_word.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/shape_json.h"
 #include "tools/recipe_materials.h"
@@ -52,9 +53,9 @@ Shape read_object_shape(JsonReader& reader) {
 }
 
 // Errors name the recipe's place as well as the file.
-Mesh read_object_mesh(const std::filesystem::path& file, const JsonReader& reader) {
+TexturedMesh read_object_mesh(const std::filesystem::path& file, const JsonReader& reader) {
   try {
-    return read_mesh(file);
+    return read_textured_mesh(file);
   } catch (const Error& error) {
     throw Error(error.trouble(), reader.place() + "/mesh: " + error.what(), error.hint());
   }
@@ -70,9 +71,10 @@ void read_object(JsonReader reader, const std::map<std::string, int>& materials,
       reader.fail("mesh", "stands beside a shape; an object has one of them");
     file = std::filesystem::absolute(folder / reader.text("mesh")).lexically_normal();
     unit_m = look_up(mesh_units, reader.text("unit"), reader, "unit");
-    Mesh mesh = read_object_mesh(file, reader);
-    for (auto& vertex : mesh.vertices) vertex *= unit_m;
-    object.geometry = std::move(mesh);
+    TexturedMesh textured = read_object_mesh(file, reader);
+    for (auto& vertex : textured.mesh.vertices) vertex *= unit_m;
+    object.geometry = std::move(textured.mesh);
+    object.texture_corners = std::move(textured.corners);
   } else {
     object.geometry = read_object_shape(reader);
   }

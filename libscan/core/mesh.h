@@ -21,6 +21,16 @@ struct Mesh {
   bool empty() const { return triangles.empty(); }
 };
 
+// Places on a picture at a triangle's corners: (0, 0) is its top left corner, (1, 1) the bottom
+// right one; it repeats beyond.
+using TextureCorners = std::array<Eigen::Vector2d, 3>;
+
+// A mesh and how a picture is laid on it; `corners` has one entry per triangle or is empty.
+struct TexturedMesh {
+  Mesh mesh;
+  std::vector<TextureCorners> corners;
+};
+
 // Throws scan::Error (input) for a triangle that names a vertex which is not there, or a vertex
 // that is not finite.
 void check(const Mesh& mesh);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/io/mesh_import.h"
 
-#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -11,50 +10,55 @@
 
 #include "libscan/core/error.h"
 #include "libscan/io/gltf_check.h"
+#include "libscan/io/welder.h"
 
 namespace scan {
 namespace {
 
-void append(Mesh& mesh, const aiMesh& part, const std::string& name) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const aiVector3D& v = part.mVertices[i];
-    mesh.vertices.emplace_back(v.x, v.y, v.z);
-  }
+Eigen::Vector3d vertex_of(const aiMesh& part, unsigned index, const std::string& name) {
+  if (index >= part.mNumVertices)
+    throw Error(Trouble::input, name + ": a triangle names vertex " + std::to_string(index) +
+                                    " of " + std::to_string(part.mNumVertices));
+  const aiVector3D& v = part.mVertices[index];
+  return {v.x, v.y, v.z};
+}
+
+// assimp turns glTF's places on a picture upside down.
+Eigen::Vector2d place_of(const aiMesh& part, unsigned index) {
+  const aiVector3D& place = part.mTextureCoords[0][index];
+  return {place.x, 1 - place.y};
+}
+
+void append(const aiMesh& part, const std::string& name, Welder& welder,
+            std::vector<TextureCorners>& places) {
   for (unsigned i = 0; i < part.mNumFaces; ++i) {
     const aiFace& face = part.mFaces[i];
     if (face.mNumIndices != 3) continue;  // points and lines
-    Triangle triangle;
-    for (unsigned k = 0; k < 3; ++k) {
-      if (face.mIndices[k] >= part.mNumVertices)
-        throw Error(Trouble::input, name + ": a triangle names vertex " +
-                                        std::to_string(face.mIndices[k]) + " of " +
-                                        std::to_string(part.mNumVertices));
-      triangle[k] = first + face.mIndices[k];
-    }
-    mesh.triangles.push_back(triangle);
+    std::array<Eigen::Vector3d, 3> corners;
+    for (unsigned k = 0; k < 3; ++k) corners[k] = vertex_of(part, face.mIndices[k], name);
+    if (!welder.add(corners) || !part.HasTextureCoords(0)) continue;
+    places.emplace_back();
+    for (unsigned k = 0; k < 3; ++k) places.back()[k] = place_of(part, face.mIndices[k]);
   }
 }
 
-Mesh import(const std::filesystem::path& path) {
+TexturedMesh import(const std::filesystem::path& path) {
   Assimp::Importer importer;
-  importer.SetPropertyInteger(
-      AI_CONFIG_PP_RVC_FLAGS,  // so that vertices weld by position alone
-      aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-          aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-          aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_MATERIALS);
-  const aiScene* scene = importer.ReadFile(
-      path.string(), aiProcess_RemoveComponent | aiProcess_Triangulate |
-                         aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices);
+  const aiScene* scene =
+      importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
   if (!scene) throw Error(Trouble::input, path.string() + ": " + importer.GetErrorString());
-  Mesh mesh;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(mesh, *scene->mMeshes[i], path.string());
-  return mesh;
+  Welder welder;
+  TexturedMesh result;
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i)
+    append(*scene->mMeshes[i], path.string(), welder, result.corners);
+  result.mesh = welder.take();
+  if (result.corners.size() != result.mesh.triangles.size()) result.corners.clear();
+  return result;
 }
 
 }  // namespace
 
-Mesh read_gltf(const std::filesystem::path& path) {
+TexturedMesh read_gltf(const std::filesystem::path& path) {
   check_gltf(path);
   try {
     return import(path);

@@ -10,8 +10,10 @@
 namespace scan {
 
 // All triangles of a glTF 2.0 scene (.gltf with its buffers, .glb), placed by their nodes, equal
-// vertices welded. glTF holds floats (24 bits: 1 um at 10 m). scan::Error (input) for anything that
-// is not sound: the file is checked before assimp sees it, and nothing that assimp throws gets out.
-Mesh read_gltf(const std::filesystem::path& path);
+// vertices welded, with the first set of texture coordinates if all parts have one; triangles that
+// are a line or a point are left out. glTF holds floats (24 bits: 1 um at 10 m). scan::Error
+// (input) for anything that is not sound: the file is checked before assimp sees it, and nothing
+// that assimp throws gets out.
+TexturedMesh read_gltf(const std::filesystem::path& path);
 
 }  // namespace scan

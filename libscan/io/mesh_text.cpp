@@ -35,8 +35,9 @@ class MeshLines {
     return *line;
   }
 
-  Eigen::Vector3d vertex(std::string_view words) const {
-    Eigen::Vector3d x;
+  template <int Count>
+  Eigen::Matrix<double, Count, 1> numbers(std::string_view words) const {
+    Eigen::Matrix<double, Count, 1> x;
     for (double& coordinate : x) {
       const std::string_view word = take_word(words);
       const auto number = number_from<double>(word);
@@ -64,15 +65,60 @@ void append_fan(Mesh& mesh, const std::vector<std::uint32_t>& corners) {
     mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
 }
 
-// OBJ counts from 1, or backwards from -1, the vertex read last.
-std::uint32_t obj_corner(const MeshLines& lines, std::string_view word, std::size_t vertices) {
-  const long index = lines.whole<long>(word.substr(0, word.find('/')), "vertex");
-  const long count = static_cast<long>(vertices);
+// OBJ counts from 1, or backwards from -1, the one read last.
+std::uint32_t obj_index(const MeshLines& lines, std::string_view word, std::size_t listed,
+                        const char* what) {
+  const long index = lines.whole<long>(word, what);
+  const long count = static_cast<long>(listed);
   const long from_zero = index < 0 && index >= -count ? count + index : index - 1;
   if (from_zero < 0 || from_zero >= count)
-    lines.fail("vertex " + std::to_string(index) + ", there are " + std::to_string(vertices));
+    lines.fail(std::string(what) + " " + std::to_string(index) + ", there are " +
+               std::to_string(listed));
   return static_cast<std::uint32_t>(from_zero);
 }
+
+// An OBJ as far as it is read.
+class ObjReader {
+ public:
+  explicit ObjReader(MeshLines& lines) : lines_(lines) {}
+
+  void read_face(std::string_view words) {
+    std::vector<std::uint32_t> corners;
+    std::vector<Eigen::Vector2d> places;
+    for (auto word = take_word(words); !word.empty(); word = take_word(words)) {
+      const std::size_t slash = std::min(word.find('/'), word.size());
+      corners.push_back(
+          obj_index(lines_, word.substr(0, slash), result_.mesh.vertices.size(), "vertex"));
+      std::string_view place = word.substr(std::min(slash + 1, word.size()));
+      place = place.substr(0, place.find('/'));
+      if (!place.empty())
+        places.push_back(places_[obj_index(lines_, place, places_.size(), "texture coordinate")]);
+    }
+    if (corners.size() < 3) lines_.fail("a face has fewer than three corners");
+    append_fan(result_.mesh, corners);
+    is_textured_ = is_textured_ && places.size() == corners.size();
+    for (std::size_t k = 2; is_textured_ && k < places.size(); ++k)
+      result_.corners.push_back({places[0], places[k - 1], places[k]});
+  }
+  void read_vertex(std::string_view words) {
+    result_.mesh.vertices.push_back(lines_.numbers<3>(words));
+  }
+  // OBJ counts upwards from the picture's lower edge.
+  void read_place(std::string_view words) {
+    const Eigen::Vector2d place = lines_.numbers<2>(words);
+    places_.emplace_back(place.x(), 1 - place.y());
+  }
+  TexturedMesh take() {
+    if (!is_textured_) result_.corners.clear();
+    return std::move(result_);
+  }
+
+ private:
+  MeshLines& lines_;
+  std::vector<Eigen::Vector2d> places_;
+  bool is_textured_ = true;
+  TexturedMesh result_;
+};
 
 // Joins lines that end in a backslash with the next one.
 std::string without_continuations(std::string_view text) {
@@ -110,21 +156,17 @@ void read_off_faces(MeshLines& lines, std::size_t faces, Mesh& mesh) {
 
 }  // namespace
 
-Mesh parse_obj(std::string_view text, const std::string& name) {
+TexturedMesh parse_obj(std::string_view text, const std::string& name) {
   const std::string joined = without_continuations(text);
   MeshLines lines(joined, name);
-  Mesh mesh;
+  ObjReader reader(lines);
   while (auto words = lines.next()) {
     const std::string_view keyword = take_word(*words);
-    if (keyword == "v") mesh.vertices.push_back(lines.vertex(*words));
-    if (keyword != "f") continue;
-    std::vector<std::uint32_t> corners;
-    for (auto word = take_word(*words); !word.empty(); word = take_word(*words))
-      corners.push_back(obj_corner(lines, word, mesh.vertices.size()));
-    if (corners.size() < 3) lines.fail("a face has fewer than three corners");
-    append_fan(mesh, corners);
+    if (keyword == "v") reader.read_vertex(*words);
+    if (keyword == "vt") reader.read_place(*words);
+    if (keyword == "f") reader.read_face(*words);
   }
-  return mesh;
+  return reader.take();
 }
 
 // Colours, normals and texture (COFF, NOFF, STOFF) stand behind the coordinates and are left out.
@@ -145,7 +187,7 @@ Mesh parse_off(std::string_view text, const std::string& name) {
   const auto faces = lines.whole<std::uint32_t>(take_word(words), "count of faces");
   Mesh mesh;
   for (std::uint32_t i = 0; i < vertices; ++i)
-    mesh.vertices.push_back(lines.vertex(lines.require("vertex " + std::to_string(i))));
+    mesh.vertices.push_back(lines.numbers<3>(lines.require("vertex " + std::to_string(i))));
   read_off_faces(lines, faces, mesh);
   if (lines.next()) lines.fail("data behind the last face that the header promises");
   return mesh;

@@ -11,10 +11,11 @@
 
 namespace scan {
 
-// Polygons become fans; what is no geometry (materials, texture, normals, lines) is left out. An
-// STL, text or binary, gets its equal vertices welded and loses triangles that are a line or a
-// point then. scan::Error (input) names `name` and line, or the byte count that does not fit.
-Mesh parse_obj(std::string_view text, const std::string& name);
+// Polygons become fans; what is no geometry (materials, normals, lines) is left out. An OBJ keeps
+// its texture coordinates if every face has them. An STL, text or binary, gets its equal vertices
+// welded and loses triangles that are a line or a point then. scan::Error (input) names `name` and
+// line, or the byte count that does not fit.
+TexturedMesh parse_obj(std::string_view text, const std::string& name);
 Mesh parse_off(std::string_view text, const std::string& name);
 Mesh parse_stl(std::string_view bytes, const std::string& name);
 

@@ -90,12 +90,12 @@ void check_uncertainty(const PointCloud& cloud, const std::filesystem::path& pat
                   path.string() + ": point " + std::to_string(i) + ": covariance is not finite");
 }
 
-Mesh read_any_mesh(const std::filesystem::path& path) {
+TexturedMesh read_any_mesh(const std::filesystem::path& path) {
   const std::string ending = ending_of(path);
-  if (ending == ".ply") return mesh_from(read_ply(path), path);
+  if (ending == ".ply") return {mesh_from(read_ply(path), path), {}};
   if (ending == ".obj") return parse_obj(read_file(path), path.string());
-  if (ending == ".off") return parse_off(read_file(path), path.string());
-  if (ending == ".stl") return parse_stl(read_file(path), path.string());
+  if (ending == ".off") return {parse_off(read_file(path), path.string()), {}};
+  if (ending == ".stl") return {parse_stl(read_file(path), path.string()), {}};
   if (ending == ".glb" || ending == ".gltf") return read_gltf(path);
   refuse_ending(path, Trouble::input, ".ply .obj .stl .off .glb .gltf");
 }
@@ -124,15 +124,19 @@ void write_scan(const std::filesystem::path& path, const Scan& scan) {
     refuse_ending(path, Trouble::output, ".ply .pcd .xyz .txt .asc");
 }
 
-Mesh read_mesh(const std::filesystem::path& path) {
-  Mesh mesh = read_any_mesh(path);
-  if (mesh.empty()) throw Error(Trouble::input, path.string() + ": holds no triangle");
+TexturedMesh read_textured_mesh(const std::filesystem::path& path) {
+  TexturedMesh textured = read_any_mesh(path);
+  if (textured.mesh.empty()) throw Error(Trouble::input, path.string() + ": holds no triangle");
   try {
-    check(mesh);
+    check(textured.mesh);
   } catch (const Error& error) {
     throw Error(error.trouble(), path.string() + ": " + error.what());
   }
-  return mesh;
+  return textured;
+}
+
+Mesh read_mesh(const std::filesystem::path& path) {
+  return read_textured_mesh(path).mesh;
 }
 
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
@@ -156,7 +160,7 @@ bool holds_triangles(const std::filesystem::path& path) {
     const PlyElement* face = header.empty.find("face");
     return face && face->count > 0;
   }
-  if (ending == ".obj") return !parse_obj(read_file(path), path.string()).empty();
+  if (ending == ".obj") return !parse_obj(read_file(path), path.string()).mesh.empty();
   return ending == ".off" || ending == ".stl" || ending == ".glb" || ending == ".gltf";
 }
 

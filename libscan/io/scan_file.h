@@ -25,6 +25,9 @@ void write_scan(const std::filesystem::path& path, const Scan& scan);
 // (STL). scan::Error (input) if there are no triangles.
 Mesh read_mesh(const std::filesystem::path& path);
 
+// The same with texture coordinates, which .obj, .glb and .gltf can have.
+TexturedMesh read_textured_mesh(const std::filesystem::path& path);
+
 // .ply .obj .stl .off; written whole or not at all.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 

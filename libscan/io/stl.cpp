@@ -3,50 +3,18 @@
 // STL, text and binary: triangles without topology.
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 #include "libscan/core/error.h"
 #include "libscan/io/byte_order.h"
 #include "libscan/io/mesh_text.h"
 #include "libscan/io/text.h"
+#include "libscan/io/welder.h"
 
 namespace scan {
 namespace {
 
 constexpr std::size_t header_bytes = 80;
 constexpr std::size_t triangle_bytes = 50;  // normal, three vertices, attribute
-
-struct HashVector {
-  std::size_t operator()(const Eigen::Vector3d& v) const {
-    std::size_t hash = 0;
-    for (const double x : v) hash = hash * 0x9E3779B97F4A7C15ull + std::hash<double>()(x);
-    return hash ^ (hash >> 29);
-  }
-};
-
-// Gives equal vertices one index, in the order of their first use.
-class Welder {
- public:
-  void add(const std::array<Eigen::Vector3d, 3>& corners) {
-    Triangle triangle;
-    for (std::size_t k = 0; k < 3; ++k) triangle[k] = index_of(corners[k]);
-    const bool is_line =
-        triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
-    if (!is_line) mesh_.triangles.push_back(triangle);
-  }
-  Mesh take() { return std::move(mesh_); }
-
- private:
-  std::uint32_t index_of(const Eigen::Vector3d& vertex) {
-    const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
-    const auto [found, is_new] = indices_.try_emplace(vertex, next);
-    if (is_new) mesh_.vertices.push_back(vertex);
-    return found->second;
-  }
-
-  Mesh mesh_;
-  std::unordered_map<Eigen::Vector3d, std::uint32_t, HashVector> indices_;
-};
 
 Mesh parse_binary(std::string_view bytes, std::size_t triangles, const std::string& name) {
   Welder welder;

@@ -80,7 +80,7 @@ std::optional<Seen> see(const LaserView& view, const SheetHit& lit) {
   seen.point.height_e = view.light(seen.ray).laser_e;
   seen.point.other_e = view.light(seen.ray).other_e;
   // a smooth surface shows nothing itself; what it spoils is weighed as if it were white
-  if (has_delta(bsdf_at(view.caster.scene(), lit.hit.object, lit.hit.point)))
+  if (has_delta(bsdf_at(view.caster.scene(), lit.hit.object, lit.hit.triangle, lit.hit.point)))
     seen.point.height_e = std::max(
         seen.point.height_e, sheet_light(view.scanner, view.sheet, lit.x_in_camera).irradiance_e);
   seen.point.range_m = lit.x_in_camera.norm();
@@ -156,10 +156,10 @@ struct Outcome {
 bool meets_smooth(const LaserView& view, const SheetHit& lit) {
   if (!lit.is_hit) return false;
   const Scene& scene = view.caster.scene();
-  if (has_delta(bsdf_at(scene, lit.hit.object, lit.hit.point))) return true;
+  if (has_delta(bsdf_at(scene, lit.hit.object, lit.hit.triangle, lit.hit.point))) return true;
   const Eigen::Vector3d eye = view.world_from_camera.translation();
   const auto first = view.caster.closest(eye, (lit.hit.point - eye).normalized());
-  return first && has_delta(bsdf_at(scene, first->object, first->point));
+  return first && has_delta(bsdf_at(scene, first->object, first->triangle, first->point));
 }
 
 Outcome follow(const LaserView& view, const LightTransport& transport, const SceneTraits& traits,

@@ -152,7 +152,7 @@ std::optional<PilotRay> look(const StereoPair& s, const RayCaster& caster, const
   if (!seen || !(seen->point.z() > 0)) return std::nullopt;
   const double z_m = seen->point.z(), range_m = seen->point.norm();
   const Scene& scene = caster.scene();
-  if (has_delta(bsdf_at(scene, seen->hit.object, seen->hit.point)))
+  if (has_delta(bsdf_at(scene, seen->hit.object, seen->hit.triangle, seen->hit.point)))
     return PilotRay{.range_m = range_m,
                     .sigma_m = 0.1 * range_m * z_m / (c.focal_px * c.baseline_m),
                     .met_smooth = true};

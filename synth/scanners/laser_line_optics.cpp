@@ -18,7 +18,7 @@ struct Reflector {
   Eigen::Vector3d out;
 
   Reflector(const Scene& scene, const Hit& hit, const Eigen::Vector3d& out_in_world)
-      : bsdf(bsdf_at(scene, hit.object, hit.point)) {
+      : bsdf(bsdf_at(scene, hit.object, hit.triangle, hit.point)) {
     local_from_world = frame_about(hit.normal).transpose();
     out = local_from_world * out_in_world;
   }

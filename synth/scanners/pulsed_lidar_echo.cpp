@@ -86,7 +86,7 @@ std::optional<Echo> LidarBeam::echo_of(const Pose& world_from_scanner, const Bea
   const double range_m = seen->point.norm();
   const double cosine = std::abs(seen->normal.dot(ray.direction));
   const Eigen::Vector3d back(std::sqrt(std::max(0.0, 1 - cosine * cosine)), 0, cosine);
-  const Bsdf bsdf = bsdf_at(caster.scene(), seen->hit.object, seen->hit.point);
+  const Bsdf bsdf = bsdf_at(caster.scene(), seen->hit.object, seen->hit.triangle, seen->hit.point);
   const double albedo = std::numbers::pi * evaluate(bsdf, back, back);  // of a Lambert surface
   const double falloff = reference_range_m * reference_range_m / (range_m * range_m);
   return Echo{

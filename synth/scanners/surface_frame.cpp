@@ -10,7 +10,7 @@ namespace scan::synth {
 
 SurfaceFrame::SurfaceFrame(const SeenSurface& seen, const Scene& scene)
     : scanner_from_local_(frame_about(seen.normal)),
-      bsdf_(bsdf_at(scene, seen.hit.object, seen.hit.point)) {}
+      bsdf_(bsdf_at(scene, seen.hit.object, seen.hit.triangle, seen.hit.point)) {}
 
 Eigen::Vector3d SurfaceFrame::local(const Eigen::Vector3d& direction) const {
   return scanner_from_local_.transpose() * direction;

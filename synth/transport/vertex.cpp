@@ -35,7 +35,8 @@ Vertex surface_vertex(const Scene& scene, const ObjectOptics& optics, const Hit&
                       const Eigen::Vector3d& out, const Surroundings& around) {
   Vertex vertex{.hit = optics.is_transmissive ? hit : facing(hit, -out),
                 .out = out,
-                .bsdf = optics.is_textured ? bsdf_at(scene, hit.object, hit.point) : optics.bsdf,
+                .bsdf = optics.is_textured ? bsdf_at(scene, hit.object, hit.triangle, hit.point)
+                                           : optics.bsdf,
                 .optics = &optics,
                 .around = around};
   if (optics.is_transmissive) set_relative_index(vertex.bsdf, optics, around);

@@ -60,10 +60,37 @@ void expect_tetrahedron(const Mesh& mesh) {
 TEST(Gltf, ReadsBinaryAndTextWithNodesAndWelds) {
   const TemporaryFolder folder;
   write_file(folder / "a.glb", glb());
-  expect_tetrahedron(read_gltf(folder / "a.glb"));
+  expect_tetrahedron(read_gltf(folder / "a.glb").mesh);
   write_file(folder / "a.bin", buffer());
   write_file(folder / "a.gltf", document(R"("uri":"a.bin",)"));
-  expect_tetrahedron(read_gltf(folder / "a.gltf"));
+  expect_tetrahedron(read_gltf(folder / "a.gltf").mesh);
+  EXPECT_TRUE(read_gltf(folder / "a.gltf").corners.empty());
+}
+
+// Each corner's place on the picture is (x, y) of its position here.
+TEST(Gltf, ReadsTextureCoordinates) {
+  const TemporaryFolder folder;
+  const int corners[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+  std::string bytes;
+  for (const auto& [x, y] : corners)
+    for (const int value : {x, y, 0}) store(bytes, static_cast<float>(value), std::endian::little);
+  for (const auto& [x, y] : corners)
+    for (const int value : {x, y}) store(bytes, static_cast<float>(value), std::endian::little);
+  write_file(folder / "a.bin", bytes);
+  write_file(
+      folder / "a.gltf",
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1}}]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},)"
+      R"({"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24}],)"
+      R"("buffers":[{"uri":"a.bin","byteLength":60}]})");
+  const TexturedMesh textured = read_gltf(folder / "a.gltf");
+  ASSERT_EQ(textured.corners.size(), 1u);
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t vertex = textured.mesh.triangles[0][k];
+    EXPECT_EQ(textured.corners[0][k], textured.mesh.vertices[vertex].head<2>());
+  }
 }
 
 TEST(Gltf, RefusesPromisesThatDoNotHold) {

@@ -14,10 +14,29 @@ const std::string obj =
     "vt 0 0\nvn 0 0 1\nusemtl red\nf 1/1/1 2//1 3/1 \\\n 4\nf -4 -2 -1\nl 1 2\n";
 
 TEST(Obj, ReadsPolygonsBackwardIndicesAndContinuedLines) {
-  const Mesh mesh = parse_obj(obj, "a.obj");
+  const Mesh mesh = parse_obj(obj, "a.obj").mesh;
   ASSERT_EQ(mesh.vertices.size(), 4u);
   EXPECT_EQ(mesh.vertices[2].z(), 0.123456789012345678);  // to the last digit of a double
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 2, 3}}));
+}
+
+// OBJ counts v upwards, TextureCorners downwards; fans share their first corner.
+TEST(Obj, KeepsTextureCoordinatesIfAllFacesHaveThem) {
+  const std::string obj =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0.25\nvt 1 0.25\nvt 1 1\nvt 0 1 0\n"
+      "f 1/1 2/2/7 3/3 4/-1\n";
+  const TexturedMesh textured = parse_obj(obj, "a.obj");
+  ASSERT_EQ(textured.corners.size(), 2u);
+  EXPECT_EQ(textured.corners[0][0], Eigen::Vector2d(0, 0.75));
+  EXPECT_EQ(textured.corners[0][2], Eigen::Vector2d(1, 0));
+  EXPECT_EQ(textured.corners[1][0], Eigen::Vector2d(0, 0.75));
+  EXPECT_EQ(textured.corners[1][2], Eigen::Vector2d(0, 0));
+  EXPECT_TRUE(parse_obj(obj + "f 1//1 2//1 3//1\n", "a.obj").corners.empty());
+  EXPECT_TRUE(parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", "a.obj").corners.empty());
+  EXPECT_NE(error_of([&] {
+              parse_obj(obj + "f 1/9 2/1 3/1\n", "a.obj");
+            }).find("line 10: texture coordinate 9, there are 4"),
+            std::string::npos);
 }
 
 TEST(Obj, NamesTheLineOfWhatIsBroken) {
@@ -101,8 +120,8 @@ TEST(Stl, RefusesLyingCountsAndNumbersThatAreNone) {
 
 TEST(MeshText, ReadsOrRefusesAnyDamage) {
   const auto checked = [](const Mesh& mesh) { check(mesh); };
-  expect_read_or_refused(obj, 5000,
-                         [&](const std::string& bytes) { checked(parse_obj(bytes, "d.obj")); });
+  expect_read_or_refused(
+      obj, 5000, [&](const std::string& bytes) { checked(parse_obj(bytes, "d.obj").mesh); });
   expect_read_or_refused(off, 5000,
                          [&](const std::string& bytes) { checked(parse_off(bytes, "d.off")); });
   expect_read_or_refused(stl, 5000,

@@ -62,7 +62,7 @@ class PlainTracer {
     frame.col(0) = hit.normal.unitOrthogonal();
     frame.col(1) = hit.normal.cross(frame.col(0));
     frame.col(2) = hit.normal;
-    const auto next = sample(bsdf_at(caster_.scene(), hit.object, hit.point),
+    const auto next = sample(bsdf_at(caster_.scene(), hit.object, hit.triangle, hit.point),
                              frame.transpose() * -direction, random.next_3d());
     if (!next) return false;
     share *= next->weight;

@@ -68,6 +68,10 @@ INSTANTIATE_TEST_SUITE_P(
              "\"diffuse\": 0.6, \"texture\": { \"picture\": { \"file\": \"no.png\", "
              "\"width_mm\": 5 } }",
              "no.png"},
+        Slip{"\"diffuse\": 0.6",
+             "\"diffuse\": 0.6, \"texture\": { \"picture\": { \"file\": \"" LIBSCAN_SOURCE_DIR
+             "/docs/bracket-deviation.png\" } }",
+             "a picture without a width"},
         Slip{"\"frequencies_mhz\": [80]", "\"frequencies_mhz\": [0]", "frequencies_hz"},
         Slip{"\"radius_mm\": 400", "\"radius_mm\": 60", "stands inside"},
         Slip{"{ \"sphere\": { \"radius_mm\": 25 } }", "\"brakcet\"", "did you mean 'bracket'"},
