@@ -67,6 +67,11 @@ TEST(Icp, PartialOverlapDoesNotPullTheCloudsTogether) {
   EXPECT_LT(translation_distance_m(result.target_from_source, Pose::Identity()), 1e-3);
   EXPECT_LT(rotation_distance_rad(result.target_from_source, Pose::Identity()), 1e-3);
   EXPECT_LT(result.inlier_fraction_of_source, 0.5);
+  // The same pose, but not to be trusted where more overlap was asked for.
+  const IcpResult refused =
+      icp(part(a, -1, 0.3), part(b, -0.3, 1), result.target_from_source, {.min_overlap = 0.6});
+  EXPECT_EQ(refused.stop, Stop::low_overlap);
+  EXPECT_LT(translation_distance_m(refused.target_from_source, Pose::Identity()), 1e-3);
 }
 
 TEST(Icp, EverySearchGivesTheSamePose) {

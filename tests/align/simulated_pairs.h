@@ -121,18 +121,18 @@ struct SimulatedPair {
   Pose truth, guess;  // target_from_source
 };
 
-// Scans of 100 x 100 points, three quarters of which they share, with noise of an eighth of the
+// Scans of side x side points, three quarters of which they share, with noise of an eighth of the
 // spacing; the start is off by 1 degree and 1 cm.
-inline SimulatedPair simulated_pair(ScannerNoise kind, std::uint64_t seed) {
+inline SimulatedPair simulated_pair(ScannerNoise kind, int side, std::uint64_t seed) {
   const WavySurface surface(seed);
   RandomStream random(seed, 4, 0);
   SimulatedPair pair;
   pair.truth = random_pose(random, 0.5, 1);
   pair.guess = pair.truth * random_pose(random, 0.017, 0.01);
-  const double sigma_m = 2.5e-3;
-  pair.source = simulated_scan(surface, kind, sigma_m, {0, 0, 0}, 100, seed, 0);
+  const double sigma_m = 0.25 / side;
+  pair.source = simulated_scan(surface, kind, sigma_m, {0, 0, 0}, side, seed, 0);
   pair.target =
-      transformed(pair.truth, simulated_scan(surface, kind, sigma_m, {0.5, 0, 0}, 100, seed, 1));
+      transformed(pair.truth, simulated_scan(surface, kind, sigma_m, {0.5, 0, 0}, side, seed, 1));
   return pair;
 }
 
