@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// What an alignment says of its own uncertainty, against its errors over many simulated pairs.
+#include <gtest/gtest.h>
+
+#include "libscan/core/parallel.h"
+#include "tests/align/icp_methods.h"
+#include "tests/align/simulated_pairs.h"
+
+namespace scan {
+namespace {
+
+// Mean of e^T I e / 6 over pairs of different surfaces; of few of them the waves all run one way,
+// and leave a motion open.
+double mean_error2(IcpMethod method, test::ScannerNoise noise, std::size_t pairs) {
+  std::vector<double> errors2(pairs);
+  parallel_for(
+      pairs,
+      [&](std::size_t i) {
+        const test::SimulatedPair pair = test::simulated_pair(noise, 50, i + 1);
+        const IcpResult result = icp(pair.source, pair.target, pair.guess, {.method = method});
+        errors2[i] =
+            result.stop == Stop::converged ? test::normalised_error2(result, pair.truth) / 6 : -1;
+      },
+      1);
+  std::erase(errors2, -1);
+  EXPECT_GE(errors2.size(), pairs * 9 / 10);
+  double sum = 0;
+  for (const double error2 : errors2) sum += error2;
+  return sum / static_cast<double>(errors2.size());
+}
+
+class PoseInformation : public testing::TestWithParam<test::ScannerNoise> {};
+INSTANTIATE_TEST_SUITE_P(EveryScanner, PoseInformation, testing::ValuesIn(test::scanner_noises),
+                         [](const auto& noise) {
+                           std::string name = test::name_of(noise.param);
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
+
+// Chi-square with six degrees of freedom: the mean over 40 pairs has sigma sqrt(2 / 240) = 0.09,
+// three of which are allowed; the scatter of 32 patches adds its own to the tail (the mean of 1 / s
+// with 25 degrees of freedom is 4 % more variable). 50 x 50 points put 9 x 9 on a patch, where
+// noise shared over 5 and normals fitted over 4 still cross half of the borders: up to a fifth of
+// the scatter is missed where points err alone, up to half where neighbours err together. Taking
+// all pairs for independent would give 2.5 and more than 5.
+TEST_P(PoseInformation, TellsTheErrorThatThereIs) {
+  const bool shared =
+      GetParam() == test::ScannerNoise::laser_line || GetParam() == test::ScannerNoise::correlated;
+  const double mean = mean_error2(IcpMethod::symmetric, GetParam(), 40);
+  RecordProperty("mean_error2", std::to_string(mean));
+  EXPECT_GT(mean, 1 - 0.27);
+  EXPECT_LT(mean, (shared ? 1.5 : 1.2) + 0.27);
+}
+
+// Along what is weak it is zero, elsewhere positive.
+TEST(PoseInformationOfACorridor, IsZeroAlongIt) {
+  const auto noisy = [](std::uint64_t seed) {
+    PointCloud cloud = test::bumpy_surface(0, 0);
+    for (int i = 0; i < 8000; ++i) {
+      RandomStream random(seed, 9, std::uint64_t(i));
+      const double x = 20 * random.uniform() - 10, u = 2 * random.uniform() - 1;
+      const std::uint32_t side = random.bits32() % 2;
+      const double error_m = 0.01 * random.normal();
+      cloud.points.push_back(side ? Eigen::Vector3d(x, u, 1 + error_m)
+                                  : Eigen::Vector3d(x, 1 + error_m, u));
+    }
+    return cloud;
+  };
+  const IcpResult result = icp(noisy(1), noisy(2), Pose(Eigen::Translation3d(0.3, 0.02, 0.01)));
+  ASSERT_EQ(result.stop, Stop::degenerate);
+  const Matrix6& information = result.information;
+  // The free direction leans from x as the start does, by the ratio of what is fixed to the length.
+  EXPECT_LT(information(3, 3), 1e-4 * information(4, 4));
+  for (const int i : {0, 1, 2, 4, 5}) EXPECT_GT(information(i, i), 0);
+}
+
+}  // namespace
+}  // namespace scan
