@@ -17,7 +17,7 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> paths;
-  std::string method = "point-to-plane";
+  std::string method{name_of(IcpOptions{}.method)};
   std::string search = "kd-tree";
   std::string init;
   double max_distance_m = 0;
@@ -111,7 +111,8 @@ int align_files(const Arguments& arguments, Console& console) {
 Action align_command(CommandLine& line) {
   auto arguments = std::make_shared<Arguments>();
   line.inputs("INPUT... OUT", arguments->paths, "scans; last the folder to write into");
-  line.choice("--method", arguments->method, {"point-to-point", "point-to-plane"},
+  line.choice("--method", arguments->method,
+              {"point-to-point", "point-to-plane", "symmetric", "plane-to-plane"},
               "what the pairs of points are held against");
   line.choice("--search", arguments->search,
               {"kd-tree", "octree", "brute-force", "flann", "pcl-octree"}, "neighbour search");

@@ -41,7 +41,8 @@ void fields(Fields& f, AcquireOptions& o) {
 }
 
 void fields(Fields& f, MultiviewOptions& o) {
-  enumeration(f, "method", o.icp.method, {"point-to-point", "point-to-plane"});
+  enumeration(f, "method", o.icp.method,
+              {"point-to-point", "point-to-plane", "symmetric", "plane-to-plane"});
   enumeration(f, "search", o.icp.search,
               {"kd-tree", "octree", "brute-force", "flann", "pcl-octree"});
   f.length("max_distance", o.icp.max_pair_distance_m);

@@ -4,157 +4,131 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <numeric>
 
-#include "libscan/align/observability.h"
+#include "libscan/align/median.h"
 #include "libscan/align/pairs.h"
-#include "libscan/align/rigid_fit.h"
+#include "libscan/align/pose_step.h"
 #include "libscan/core/error.h"
-#include "libscan/core/parallel.h"
 
 namespace scan {
 namespace {
 
 constexpr std::size_t least_pairs = 6;
-constexpr std::size_t chunk = 1024;
-
-// Sums over the kept pairs of J^T J and J^T r, lengths in units of the frame's size.
-struct NormalEquations {
-  Matrix6 a = Matrix6::Zero();
-  Vector6 b = Vector6::Zero();
-  NormalEquations& operator+=(const NormalEquations& other) {
-    a += other.a;
-    b += other.b;
-    return *this;
-  }
-};
-
-template <class Residual>
-void add(NormalEquations& sum, const PointPair& pair, const DataFrame& frame) {
-  auto jacobian = Residual::jacobian(pair, frame.centre).eval();
-  jacobian.template leftCols<3>() /= frame.size_m;
-  sum.a += jacobian.transpose() * jacobian;
-  sum.b -= jacobian.transpose() * (Residual::value(pair) / frame.size_m);
-}
+// The loss's scale in median residuals: wide at first, so that a start far off still pulls, then
+// narrowing, so that what has no counterpart pulls no longer. 1.5 medians are one sigma of normal
+// noise.
+constexpr double widest_scale = 3, narrowest_scale = 1.5, narrowing = 0.8;
+// While the scale narrows, so many points of the source at least are asked, one in four.
+constexpr std::size_t least_sample = 2000;
+constexpr std::size_t coarse_stride = 4;
+// A step below a tenth of its own standard error changes nothing that can be known.
+constexpr double negligible_share_of_sigma = 0.1;
 
 void check_guess(const Pose& guess) {
   if (!guess.matrix().allFinite())
     throw Error(Trouble::input, "icp: target_from_source_guess is not finite");
 }
 
+// Every `stride`-th point by its place in the cloud as it was given, so that the choice does not
+// depend on the frame.
+std::vector<std::uint32_t> every(std::size_t stride, const PreparedCloud& source) {
+  std::vector<std::uint32_t> sample;
+  sample.reserve(source.size() / stride + 1);
+  for (std::uint32_t i = 0; i < source.size(); ++i)
+    if (source.index[i] % stride == 0) sample.push_back(i);
+  return sample;
+}
+
 // The iteration of one call to icp, in the clouds' local frames.
 class Iteration {
  public:
-  Iteration(const LocalCloud& source, const LocalCloud& target, const IcpOptions& options)
+  Iteration(const PreparedCloud& source, const PreparedCloud& target, const IcpOptions& options)
       : source_(source), target_(target), options_(options), finder_(source, target, options) {}
 
   void run(const Pose& guess, IcpResult& result);
 
  private:
-  // Pairs kept at the current pose, where they lie, and the motions that they leave open.
+  // Pairs that count at the current pose, where they lie, and the motions that they leave open.
   struct State {
-    std::vector<std::uint32_t> kept;
+    std::vector<Couple> couples;
     DataFrame frame;
     TwistBasis weak{6, 0};
   };
 
-  void tighten();
-  State examine(const Gates& gates);
-  State examine_and_widen();
-  NormalEquations normal_equations(const State& state) const;
-  Vector6 step(const State& state) const;
-  Vector6 rigid_step(const State& state) const;
+  void sample_every(std::size_t stride);
+  void narrow();
+  bool is_narrow() const { return scale_in_medians_ <= narrowest_scale && settled_; }
+  void widen_for_weak();
+  State examine(const Weighing& weighing) const;
   Vector6 accept_lower(const State& state, Vector6 twist);
   bool small(const Vector6& twist, const DataFrame& frame) const;
-  double rms_m(const State& state) const;
-  void finish(bool at_limit, IcpResult& result);
+  bool negligible(const Vector6& twist, const State& state) const;
+  bool iterate(IcpResult& result);
   void report(const State& state, IcpResult& result) const;
+  Stop judge(const State& state) const;
 
-  const LocalCloud& source_;
-  const LocalCloud& target_;
+  const PreparedCloud& source_;
+  const PreparedCloud& target_;
   const IcpOptions& options_;
   PairFinder finder_;
   Pose pose_ = Pose::Identity();
-  Gates gates_;
-  bool gates_settled_ = false;
+  std::size_t stride_ = 1;
+  std::vector<std::uint32_t> sample_;
   std::vector<Match> matches_;
+  Weighing weighing_;
+  double scale_in_medians_ = widest_scale;
+  bool settled_ = false;  // the scale follows the residuals no further
 };
 
-void Iteration::tighten() {
-  const Gates before = gates_;
-  gates_ = finder_.tightened(before, pose_, matches_);
-  gates_settled_ = gates_.distance_m >= 0.99 * before.distance_m;
+void Iteration::sample_every(std::size_t stride) {
+  stride_ = stride;
+  sample_ = every(stride, source_);
+  matches_.clear();
+  finder_.find(pose_, sample_, matches_);
 }
 
-Iteration::State Iteration::examine(const Gates& gates) {
-  State state;
-  state.kept = finder_.kept(matches_, gates);
-  if (state.kept.size() < least_pairs) return state;
-  std::vector<std::uint32_t> used;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const std::uint32_t i : state.kept) {
-    used.push_back(matches_[i].target);
-    sum += pose_ * source_.points[i];
+// The scale that fits the residuals, never wider than before.
+void Iteration::narrow() {
+  const double before_m = weighing_.loss.scale_m;
+  const double least_m = 1e-15 * target_.radius_m + 1e-150;
+  weighing_.loss.scale_m =
+      std::max(scale_in_medians_ * finder_.median_residual_m(matches_), least_m);
+  if (options_.trim_fraction > 0) {
+    std::vector<double> residuals_m;
+    for (const Match& match : matches_)
+      if (match.residual_m < unlimited_m) residuals_m.push_back(match.residual_m);
+    weighing_.limit_m =
+        std::min(weighing_.limit_m, quantile(std::move(residuals_m), 1 - options_.trim_fraction));
   }
-  const auto count = static_cast<double>(state.kept.size());
-  state.frame.centre = sum / count;
-  double sum2 = 0;
-  for (const std::uint32_t i : state.kept)
-    sum2 += (pose_ * source_.points[i] - state.frame.centre).squaredNorm();
-  state.frame.size_m = std::sqrt(sum2 / count);
-  if (!(state.frame.size_m > 0)) state.frame.size_m = 1;  // all the same point: any unit will do
-  const bool planes = options_.method == IcpMethod::point_to_plane;
-  const auto normals = planes ? std::span<const Eigen::Vector3d>(target_.normals)
-                              : std::span<const Eigen::Vector3d>();
-  state.weak = weak_motions(used, target_.points, normals, finder_.surface(), state.frame);
-  return state;
+  widen_for_weak();
+  settled_ = weighing_.loss.scale_m >= 0.99 * before_m;
+  if (settled_) weighing_.loss.scale_m = before_m;
 }
 
-// The few points that alone fix a motion have the worst residuals until it is found: where trimming
+// The few points that alone fix a motion have the worst residuals until it is found: where the loss
 // would leave more motions weak than there are, it waits.
-Iteration::State Iteration::examine_and_widen() {
-  State state = examine(gates_);
-  if (state.weak.cols() == 0) return state;
-  const Gates untrimmed{gates_.distance_m, gates_.distance_m};  // no residual exceeds the distance
-  State all = examine(untrimmed);
-  if (all.weak.cols() >= state.weak.cols()) return state;
-  gates_ = untrimmed;
-  return all;
-}
-
-NormalEquations Iteration::normal_equations(const State& state) const {
-  return ordered_sum(state.kept.size(), chunk, NormalEquations{},
-                     [&](std::size_t begin, std::size_t end) {
-                       NormalEquations sum;
-                       for (std::size_t i = begin; i < end; ++i) {
-                         const PointPair pair = finder_.pair(pose_, matches_, state.kept[i]);
-                         if (options_.method == IcpMethod::point_to_plane)
-                           add<PointToPlane>(sum, pair, state.frame);
-                         else
-                           add<PointToPoint>(sum, pair, state.frame);
-                       }
-                       return sum;
-                     });
-}
-
-// The exact minimum over all rotations, as a twist about the frame's centre.
-Vector6 Iteration::rigid_step(const State& state) const {
-  std::vector<Eigen::Vector3d> moved, partners;
-  for (const std::uint32_t i : state.kept) {
-    const PointPair pair = finder_.pair(pose_, matches_, i);
-    moved.push_back(pair.moved - state.frame.centre);
-    partners.push_back(pair.target - state.frame.centre);
+void Iteration::widen_for_weak() {
+  const auto weak_at = [&](const Weighing& weighing) { return examine(weighing).weak.cols(); };
+  Eigen::Index weak = weak_at(weighing_);
+  if (weak == 0) return;
+  const Eigen::Index least = weak_at({.loss = {.scale_m = unlimited_m}});
+  if (weak <= least) return;
+  weighing_.limit_m = unlimited_m;
+  while (weak > least) {
+    weighing_.loss.scale_m *= 2;
+    weak = weak_at(weighing_);
   }
-  Vector6 twist = log(rigid_fit(moved, partners).target_from_source);
-  twist.tail<3>() /= state.frame.size_m;
-  return complement_projector(state.weak) * twist;
 }
 
-// Twist about the frame's centre, translation in units of its size.
-Vector6 Iteration::step(const State& state) const {
-  if (options_.method == IcpMethod::point_to_point) return rigid_step(state);
-  const NormalEquations sums = normal_equations(state);
-  return solve_withholding(sums.a, sums.b, state.weak);
+Iteration::State Iteration::examine(const Weighing& weighing) const {
+  State state;
+  state.couples = finder_.kept(sample_, matches_, weighing);
+  if (state.couples.size() < least_pairs) return state;
+  state.frame = frame_of(finder_, pose_, state.couples);
+  state.weak = weak_motions(
+      motion_information(finder_, pose_, state.couples, state.frame, NormalErrors::of_fits));
+  return state;
 }
 
 bool Iteration::small(const Vector6& twist, const DataFrame& frame) const {
@@ -163,107 +137,131 @@ bool Iteration::small(const Vector6& twist, const DataFrame& frame) const {
              options_.stop_translation_fraction * 2 * source_.radius_m;
 }
 
+// Independent residuals would fix the pose no better than to this; most are not.
+bool Iteration::negligible(const Vector6& twist, const State& state) const {
+  const double sigma_m = rms_m(state.couples, weighing_.loss);
+  double moved2_m2 = 0;  // sum over the pairs of the squared change of the residual
+  for (const Couple& couple : state.couples) {
+    const PointPair pair = finder_.pair(pose_, couple);
+    const Eigen::Vector3d change_m = twist.head<3>().cross(pair.moved - state.frame.centre) +
+                                     state.frame.size_m * twist.tail<3>();
+    const double along_m = pair.normal.isZero(0) ? change_m.norm() : pair.normal.dot(change_m);
+    moved2_m2 += along_m * along_m;
+  }
+  const double limit_m = negligible_share_of_sigma * sigma_m;
+  return moved2_m2 <= limit_m * limit_m;
+}
+
 // Moves by the twist, or by the first of its quarters that does not raise the objective (partners
 // found anew); by nothing when even a negligible part would. Returns what was moved.
 Vector6 Iteration::accept_lower(const State& state, Vector6 twist) {
-  const double before = finder_.cost_m2(matches_, gates_);
+  const double before_m2 = finder_.objective_m2(matches_, weighing_);
   while (true) {
-    Vector6 metric = twist;
-    metric.tail<3>() *= state.frame.size_m;
-    const Eigen::Vector3d& c = state.frame.centre;
-    const Pose moved = Eigen::Translation3d(c) * exp(metric) * Eigen::Translation3d(-c) * pose_;
-    const std::vector<Match> matches = finder_.find(moved, gates_.distance_m);
-    if (finder_.cost_m2(matches, gates_) <= before) {
-      pose_ = make_pose(nearest_rotation(moved.linear()), moved.translation());
-      matches_ = matches;
+    const Pose there = moved(pose_, twist, state.frame);
+    std::vector<Match> matches = matches_;
+    finder_.find(there, sample_, matches);
+    if (finder_.objective_m2(matches, weighing_) <= before_m2) {
+      pose_ = there;
+      matches_ = std::move(matches);
       return twist;
     }
-    if (small(twist, state.frame)) return Vector6::Zero();
+    if (small(twist, state.frame) || negligible(twist, state)) return Vector6::Zero();
     twist /= 4;
   }
 }
 
-double Iteration::rms_m(const State& state) const {
-  double sum = 0;
-  for (const std::uint32_t i : state.kept) sum += matches_[i].residual_m * matches_[i].residual_m;
-  return std::sqrt(sum / static_cast<double>(state.kept.size()));
+// One step. Returns whether another one may follow.
+bool Iteration::iterate(IcpResult& result) {
+  narrow();
+  if (scale_in_medians_ <= narrowest_scale && stride_ > 1) {
+    sample_every(1);
+    narrow();
+  }
+  const State state = examine(weighing_);
+  if (state.couples.size() < least_pairs) return false;
+  result.history.push_back({weighing_.loss.scale_m, finder_.objective_m2(matches_, weighing_),
+                            rms_m(state.couples, weighing_.loss)});
+  const Vector6 twist = accept_lower(
+      state, step(finder_, pose_, state.couples, weighing_.loss, state.frame, state.weak));
+  ++result.iterations;
+  if (options_.on_iteration)
+    options_.on_iteration(result.iterations, global_pose(pose_, source_, target_));
+  // Point-to-point creeps: its steps say little of how far it has to go.
+  const bool creeps = options_.method == IcpMethod::point_to_point;
+  const bool still = small(twist, state.frame) || (!creeps && negligible(twist, state));
+  if (is_narrow() && still) return false;
+  scale_in_medians_ = std::max(narrowest_scale, narrowing * scale_in_medians_);
+  return true;
+}
+
+Stop Iteration::judge(const State& state) const {
+  if (state.weak.cols() > 0) return Stop::degenerate;
+  std::vector<bool> partners(target_.size(), false);
+  for (const Couple& couple : state.couples) partners[couple.target] = true;
+  const auto seen = static_cast<double>(std::count(partners.begin(), partners.end(), true));
+  const double overlap =
+      std::max(static_cast<double>(state.couples.size()) / static_cast<double>(sample_.size()),
+               seen / static_cast<double>(target_.size()));
+  return overlap < options_.min_overlap ? Stop::low_overlap : Stop::converged;
 }
 
 void Iteration::report(const State& state, IcpResult& result) const {
   result.target_from_source = global_pose(pose_, source_, target_);
-  result.pairs = state.kept.size();
+  result.pairs = state.couples.size();
   result.inlier_fraction_of_source =
-      static_cast<double>(state.kept.size()) / static_cast<double>(source_.points.size());
-  result.rms_m = rms_m(state);
+      static_cast<double>(state.couples.size()) / static_cast<double>(sample_.size());
+  result.rms_m = rms_m(state.couples, weighing_.loss);
+  result.centre = target_.origin + state.frame.centre;
   result.weak_directions = name_motions(state.weak, state.frame, target_.origin);
-  // Residuals cannot be known better than the coordinates are rounded.
-  const double rounding_m = 1e-16 * (target_.origin.norm() + target_.radius_m);
-  const double sigma_m = std::max({result.rms_m, rounding_m, 1e-150});
-  const Matrix6 projector = complement_projector(state.weak);
-  Matrix6 to_frame = Matrix6::Identity();  // twist about the target's origin -> about the centre
-  to_frame.bottomLeftCorner<3, 3>() =
-      -cross_matrix(target_.origin + state.frame.centre) / state.frame.size_m;
-  to_frame.bottomRightCorner<3, 3>() /= state.frame.size_m;
-  const double scale = state.frame.size_m / sigma_m;
-  result.information = scale * scale * to_frame.transpose() * projector *
-                       normal_equations(state).a * projector * to_frame;
-}
-
-void Iteration::finish(bool at_limit, IcpResult& result) {
-  const State state = examine_and_widen();
-  if (state.kept.size() < least_pairs) {
-    result.stop = Stop::no_correspondences;
-    return;
-  }
-  result.stop = at_limit                 ? Stop::iteration_limit
-                : state.weak.cols() == 0 ? Stop::converged
-                                         : Stop::degenerate;
-  report(state, result);
+  result.information =
+      pose_information(finder_, pose_, state.couples, weighing_.loss, state.frame, state.weak);
 }
 
 void Iteration::run(const Pose& guess, IcpResult& result) {
   pose_ = local_pose(guess, source_, target_);
-  const double given = options_.max_pair_distance_m;
-  matches_ = finder_.find(pose_, given > 0 ? given : unlimited_m);
-  for (result.iterations = 0;;) {
-    tighten();
-    const State state = examine_and_widen();
-    if (state.kept.size() < least_pairs) {
-      result.stop = Stop::no_correspondences;
-      return;
-    }
-    result.history_rms_m.push_back(rms_m(state));
-    const bool last = result.iterations == options_.max_iterations;
-    Vector6 moved = Vector6::Zero();
-    if (!last) moved = accept_lower(state, step(state));
-    if (!last) ++result.iterations;
-    if (!last && options_.on_iteration)
-      options_.on_iteration(result.iterations, global_pose(pose_, source_, target_));
-    const bool settled = !last && gates_settled_ && small(moved, state.frame);
-    if (!last && !settled) continue;
-    finish(last, result);
+  weighing_.loss.scale_m = unlimited_m;
+  // Point-to-point is held by the points themselves: fewer would hold it elsewhere.
+  const bool coarse = options_.method != IcpMethod::point_to_point &&
+                      source_.size() / coarse_stride >= least_sample;
+  sample_every(coarse ? coarse_stride : 1);
+  bool moving = true;
+  while (moving && result.iterations < options_.max_iterations) moving = iterate(result);
+  if (stride_ > 1) sample_every(1);
+  const State state = examine(weighing_);
+  if (state.couples.size() < least_pairs) {
+    result.stop = Stop::no_correspondences;
     return;
   }
+  report(state, result);
+  result.stop = moving ? Stop::iteration_limit : judge(state);
 }
 
 }  // namespace
+
+IcpResult icp(const PreparedCloud& source, const PreparedCloud& target,
+              const Pose& target_from_source_guess, const IcpOptions& options) {
+  const Stopwatch watch;
+  check(options);
+  check_guess(target_from_source_guess);
+  IcpResult result;
+  const Eigen::Matrix3d& given = target_from_source_guess.linear();
+  result.target_from_source = with_proper_rotation(target_from_source_guess);
+  result.guess_off_rotation = (given - result.target_from_source.linear()).norm();
+  result.invalid_points = source.invalid_points + target.invalid_points;
+  if (std::min(source.size(), target.size()) >= least_pairs)
+    Iteration(source, target, options).run(result.target_from_source, result);
+  result.cost.seconds = watch.seconds();
+  return result;
+}
 
 IcpResult icp(const PointCloud& source, const PointCloud& target,
               const Pose& target_from_source_guess, const IcpOptions& options) {
   const Stopwatch watch;
   check(options);
   check_guess(target_from_source_guess);
-  if (options.method == IcpMethod::point_to_plane && target.normals.empty() && !target.empty())
-    throw Error(Trouble::input, "icp: the target has no normals, which point-to-plane needs",
-                "estimate normals first, or choose point-to-point");
-  IcpResult result;
-  const Eigen::Matrix3d& given = target_from_source_guess.linear();
-  result.target_from_source = with_proper_rotation(target_from_source_guess);
-  result.guess_off_rotation = (given - result.target_from_source.linear()).norm();
-  const LocalCloud local_source = localise(source), local_target = localise(target);
-  result.invalid_points = local_source.invalid_points + local_target.invalid_points;
-  if (std::min(local_source.points.size(), local_target.points.size()) >= least_pairs)
-    Iteration(local_source, local_target, options).run(result.target_from_source, result);
+  const PrepareOptions preparation{.search = options.search};
+  IcpResult result = icp(prepare(source, preparation), prepare(target, preparation),
+                         target_from_source_guess, options);
   result.cost.seconds = watch.seconds();
   return result;
 }

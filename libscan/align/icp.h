@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // Iterative closest point for one pair of clouds.
+//
+// No parameter bears a unit: partners must lie within the reach of the target's local fits, and a
+// Welsch loss whose scale follows the residuals, narrowing in steps (graduated non-convexity, Yang
+// et al. 2020), settles which of them count.
 #pragma once
 
 #include <functional>
@@ -9,32 +13,38 @@
 #include <string_view>
 #include <vector>
 
+#include "libscan/align/prepared_cloud.h"
 #include "libscan/core/cost.h"
-#include "libscan/core/point_cloud.h"
-#include "libscan/search/search.h"
 
 namespace scan {
 
-enum class IcpMethod { point_to_point, point_to_plane };
-std::string_view name_of(IcpMethod method);  // "point-to-point", "point-to-plane"
+enum class IcpMethod {
+  point_to_point,  // Besl and McKay 1992, each step by singular value decomposition
+  point_to_plane,  // Chen and Medioni 1992
+  symmetric,       // Rusinkiewicz 2019: along the mean of both normals
+  plane_to_plane,  // generalised ICP, Segal, Haehnel, Thrun 2009
+};
+std::string_view name_of(IcpMethod method);  // "point-to-point", "point-to-plane", ...
 std::optional<IcpMethod> icp_method_from(std::string_view name);
 
 // Why an alignment ended; only `converged` is success.
 enum class Stop {
-  converged,           // the step fell below both tolerances
+  converged,           // the step fell below the tolerances or its own uncertainty
   iteration_limit,     // still moving at max_iterations
   too_few_points,      // a cloud has fewer than 6 valid points; the pose is the guess
   no_correspondences,  // fewer than 6 pairs within the gates; the pose is the guess
   degenerate,          // converged in the directions that the data fix; others kept from the guess
+  low_overlap,         // came to rest where fewer than min_overlap of the points have partners
 };
 std::string_view name_of(Stop stop);  // "converged", "iteration limit", "too few points", ...
 
 struct IcpOptions {
-  IcpMethod method = IcpMethod::point_to_plane;
-  SearchMethod search = SearchMethod::kd_tree;
-  double max_pair_distance_m = 0;       // 0: three times the median pair distance, shrinking
-  double max_normal_angle_rad = 0.785;  // between paired normals, where both clouds have them
-  double trim_fraction = 0.1;           // share of the worst pairs left out
+  IcpMethod method = IcpMethod::symmetric;
+  SearchMethod search = SearchMethod::kd_tree;  // of clouds that icp prepares itself
+  double max_pair_distance_m = 0;               // 0: no limit but the reach of the local fits
+  double max_normal_angle_rad = 0.785;          // between paired normals
+  double trim_fraction = 0;                     // share of the worst pairs left out
+  double min_overlap = 0.1;                     // of the smaller cloud's points
   int max_iterations = 60;
   double stop_rotation_rad = 1e-6;
   double stop_translation_fraction = 1e-6;  // of the source's extent
@@ -45,25 +55,39 @@ struct IcpOptions {
 // Throws scan::Error (usage) naming the option and its limit.
 void check(const IcpOptions& options);
 
+// Where an iteration began. Within one scale the objective never rises.
+struct IcpState {
+  double scale_m = 0;       // of the loss
+  double objective_m2 = 0;  // mean loss over the points of the source
+  double rms_m = 0;         // of the residuals, weighted
+};
+
 struct IcpResult {
   Pose target_from_source = Pose::Identity();
   Stop stop = Stop::too_few_points;
   int iterations = 0;
-  std::size_t pairs = 0;
+  std::size_t pairs = 0;  // that counted in the end
   double inlier_fraction_of_source = 0;
-  double rms_m = 0;  // of the residual that was minimised, over the pairs kept
-  Matrix6 information =
-      Matrix6::Zero();  // J^T J / sigma^2 at the end, about the target's frame origin
-  std::vector<std::string>
-      weak_directions;  // "slide along ...", "turn about ..." in the target frame
-  std::vector<double> history_rms_m;
+  double rms_m = 0;  // of their residual that was minimised
+  // Of the overlap, in the target's frame, metres.
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  // Inverse covariance of the pose as a twist about `centre` (rad, m): from the scatter of the
+  // residuals, so that noise which neighbours share counts too. Zero along what the data leave
+  // open.
+  Matrix6 information = Matrix6::Zero();
+  // "slide along ...", "turn about ..." in the target frame.
+  std::vector<std::string> weak_directions;
+  std::vector<IcpState> history;
   std::size_t invalid_points = 0;  // not finite, left out, both clouds together
   double guess_off_rotation = 0;  // Frobenius distance of the guess's matrix from the rotation used
   Cost cost;
 };
 
-// Point-to-plane needs target normals: zero ones are not used, missing ones are scan::Error
-// (input).
+// Both clouds stay as they are and may serve many calls at once.
+IcpResult icp(const PreparedCloud& source, const PreparedCloud& target,
+              const Pose& target_from_source_guess, const IcpOptions& options = {});
+
+// Prepares both clouds, then as above.
 IcpResult icp(const PointCloud& source, const PointCloud& target,
               const Pose& target_from_source_guess, const IcpOptions& options = {});
 

@@ -7,11 +7,22 @@
 namespace scan {
 
 std::string_view name_of(IcpMethod method) {
-  return method == IcpMethod::point_to_point ? "point-to-point" : "point-to-plane";
+  switch (method) {
+    case IcpMethod::point_to_point:
+      return "point-to-point";
+    case IcpMethod::point_to_plane:
+      return "point-to-plane";
+    case IcpMethod::symmetric:
+      return "symmetric";
+    case IcpMethod::plane_to_plane:
+      return "plane-to-plane";
+  }
+  return "";
 }
 
 std::optional<IcpMethod> icp_method_from(std::string_view name) {
-  for (const IcpMethod method : {IcpMethod::point_to_point, IcpMethod::point_to_plane})
+  for (const IcpMethod method : {IcpMethod::point_to_point, IcpMethod::point_to_plane,
+                                 IcpMethod::symmetric, IcpMethod::plane_to_plane})
     if (name == name_of(method)) return method;
   return std::nullopt;
 }
@@ -28,6 +39,8 @@ std::string_view name_of(Stop stop) {
       return "no correspondences";
     case Stop::degenerate:
       return "degenerate";
+    case Stop::low_overlap:
+      return "low overlap";
   }
   return "";
 }
@@ -44,6 +57,8 @@ void check(const IcpOptions& options) {
        "max_normal_angle_rad", options.max_normal_angle_rad, "must be above 0 and at most pi");
   need(options.trim_fraction >= 0 && options.trim_fraction < 1, "trim_fraction",
        options.trim_fraction, "must be at least 0 and below 1");
+  need(options.min_overlap >= 0 && options.min_overlap <= 1, "min_overlap", options.min_overlap,
+       "must be at least 0 and at most 1");
   need(options.max_iterations >= 1, "max_iterations", options.max_iterations, "must be at least 1");
   need(options.stop_rotation_rad > 0, "stop_rotation_rad", options.stop_rotation_rad,
        "must be above 0");

@@ -2,108 +2,171 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/align/local_surface.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
+#include "libscan/align/median.h"
+#include "libscan/align/symmetric_matrix.h"
 #include "libscan/core/parallel.h"
+#include "libscan/search/batch.h"
 
 namespace scan {
 namespace {
 
-// Twice the customary neighbourhood of 16, so that the further half shares no point with it.
-constexpr std::size_t neighbours = 32;
 // Fewer points in a fit say nothing about a surface: they are landmarks.
 constexpr std::size_t least_points_of_fit = 6;
-// A fit is flat (or straight) when its thickness is below a fifth of its breadth.
-constexpr double thin_variance_ratio = 0.04;
+// A neighbourhood is straight when its breadth is below a fifth of its length, and flat when the
+// variance across it is below a third of that along its narrower direction.
+constexpr double line_variance_ratio = 0.04;
+constexpr double plane_variance_ratio = 1.0 / 3;
+constexpr std::size_t widest = 16;
+constexpr std::size_t most_spacings = 2048;
 
-std::vector<Eigen::Vector3d> without_repeats(std::span<const Eigen::Vector3d> points) {
-  std::vector<Eigen::Vector3d> sorted(points.begin(), points.end());
-  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.x(), a.y(), a.z()) < std::tie(b.x(), b.y(), b.z());
-  });
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-  return sorted;
-}
-
-struct Spread {
-  Eigen::Vector3d variances;   // ascending
-  Eigen::Matrix3d directions;  // columns
+// Central second moments of the neighbours, and those of every other one less those of the rest.
+struct Moments {
+  Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d halves = Eigen::Matrix3d::Zero();
 };
 
-Spread spread_of(std::span<const Neighbour> found, const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+Moments moments_of(std::span<const Neighbour> found, std::span<const Eigen::Vector3d> points) {
   const Eigen::Vector3d& first = points[found[0].index];
-  for (const Neighbour& n : found) mean += points[n.index] - first;
-  mean /= static_cast<double>(found.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Neighbour& n : found) {
-    const Eigen::Vector3d d = points[n.index] - first - mean;
-    covariance += d * d.transpose();
+  const auto count = static_cast<double>(found.size());
+  Eigen::Vector3d sum[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (std::size_t i = 0; i < found.size(); ++i) sum[i % 2] += points[found[i].index] - first;
+  const Eigen::Vector3d mean = (sum[0] + sum[1]) / count;
+  // Each half about its own mean: sum of d d^T less n m m^T, d and m from the common mean.
+  SymmetricSum squares[2];
+  for (std::size_t i = 0; i < found.size(); ++i)
+    squares[i % 2].add(points[found[i].index] - first - mean);
+  Eigen::Matrix3d half[2];
+  for (std::size_t h = 0; h < 2; ++h) {
+    const auto n = static_cast<double>((found.size() + 1 - h) / 2);
+    const Eigen::Vector3d offset = sum[h] - n * mean;
+    half[h] = squares[h].matrix() - offset * offset.transpose() / n;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  return {squares[0].matrix() + squares[1].matrix(), half[0] - half[1]};
 }
 
-bool is_line(const Spread& s) {
-  return s.variances[1] < thin_variance_ratio * s.variances[2];
+// First order: C + E has the normal n - (C - l0)^-1 E n, the inverse taken in the plane (Kato
+// 1995, section II.2). The halves' moments are (C +- D) / 2 up to their means, so their normals
+// differ by 2 (C - l0)^-1 D n, and half of that is the tilt.
+Eigen::Vector3d tilt_of(const Moments& moments, const Eigen::Vector3d& normal, double least) {
+  const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
+  const Eigen::Vector3d cu = moments.all * u, cv = moments.all * v;
+  const double uu = u.dot(cu) - least, vv = v.dot(cv) - least, uv = u.dot(cv);
+  const Eigen::Vector3d pull = moments.halves * normal;
+  const double pu = u.dot(pull), pv = v.dot(pull);
+  const double determinant = uu * vv - uv * uv;
+  return (-(vv * pu - uv * pv) * u - (uu * pv - uv * pu) * v) / determinant;
 }
-bool is_surface(const Spread& s) {
-  return !is_line(s) && s.variances[0] < thin_variance_ratio * s.variances[1];
+
+LocalFit fit_to(std::span<const Neighbour> found, std::span<const Eigen::Vector3d> points) {
+  LocalFit fit;
+  const double reach_m = std::sqrt(found.back().distance2_m2);
+  fit.reach_m = static_cast<float>(reach_m);
+  fit.shape = LocalShape::volume;
+  if (found.size() < least_points_of_fit) return fit;
+  const Moments moments = moments_of(found, points);
+  const Eigen::Vector3d spread = eigenvalues_of(moments.all);
+  const double rounding_m = 0x1p-50 * points[found[0].index].cwiseAbs().maxCoeff();
+  const auto count = static_cast<double>(found.size());
+  if (!(spread[2] > count * rounding_m * rounding_m)) {
+    fit.shape = LocalShape::unknown;
+  } else if (spread[1] < line_variance_ratio * spread[2]) {
+    fit.shape = LocalShape::line;
+    fit.direction = eigenvector_of(moments.all, spread[2]);
+  } else if (spread[0] < plane_variance_ratio * spread[1]) {
+    fit.shape = LocalShape::surface;
+    fit.direction = eigenvector_of(moments.all, spread[0]);
+    fit.tilt = tilt_of(moments, fit.direction, spread[0]).cast<float>();
+  }
+  return fit;
+}
+
+// Repeated points and scan lines that lie far apart hide the surface from the nearest points.
+bool is_worth_widening(const LocalFit& fit) {
+  return fit.shape == LocalShape::line || fit.shape == LocalShape::unknown;
+}
+
+// The nearest `count` places: of points that coincide, which follow one another but for others just
+// as far, one.
+template <class S>
+void nearest_places(std::span<const Eigen::Vector3d> points, std::size_t i, const S& search,
+                    std::size_t count, std::vector<Neighbour>& found) {
+  for (std::size_t k = count;; k *= 4) {
+    search.k_nearest(points[i], k, found);
+    const bool all = found.size() == points.size();
+    for (std::size_t a = 0; a + 1 < found.size(); ++a)
+      for (std::size_t b = a + 1;
+           b < found.size() && found[b].distance2_m2 == found[a].distance2_m2;)
+        if (points[found[b].index] == points[found[a].index])
+          found.erase(found.begin() + static_cast<std::ptrdiff_t>(b));
+        else
+          ++b;
+    if (all || found.size() >= count) break;
+  }
+  if (found.size() > count) found.resize(count);
+}
+
+template <class S>
+std::vector<LocalFit> fits_by(std::span<const Eigen::Vector3d> points, const S& search,
+                              std::size_t neighbours) {
+  std::vector<LocalFit> fits(points.size());
+  parallel_chunks(points.size(), queries_per_task, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbour> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      nearest_places(points, i, search, neighbours, found);
+      fits[i] = fit_to(found, points);
+      for (std::size_t more = 4;
+           more <= widest && found.size() >= neighbours && is_worth_widening(fits[i]); more *= 4) {
+        nearest_places(points, i, search, more * neighbours, found);
+        const LocalFit wider = fit_to(found, points);
+        if (wider.shape == LocalShape::surface || fits[i].shape == LocalShape::unknown)
+          fits[i] = wider;
+      }
+    }
+  });
+  return fits;
+}
+
+template <class S>
+double spacing_by(std::span<const Eigen::Vector3d> points, const S& search) {
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / most_spacings);
+  std::vector<double> distances_m((points.size() + stride - 1) / stride, -1);
+  parallel_for(distances_m.size(), [&](std::size_t k) {
+    std::vector<Neighbour> found;
+    for (std::size_t n = 2; distances_m[k] < 0; n *= 8) {
+      search.k_nearest(points[k * stride], n, found);
+      if (found.back().distance2_m2 > 0)
+        distances_m[k] = std::sqrt(std::find_if(found.begin(), found.end(), [](const Neighbour& f) {
+                                     return f.distance2_m2 > 0;
+                                   })->distance2_m2);
+      if (found.size() == points.size()) break;
+    }
+  });
+  std::erase(distances_m, -1);
+  return median(std::move(distances_m));
 }
 
 }  // namespace
 
-LocalSurface::LocalSurface(std::span<const Eigen::Vector3d> points)
-    : points_(points),
-      distinct_(without_repeats(points)),
-      tree_(distinct_),
-      fits_(points.size()),
-      made_(points.size(), false) {
-  if (distinct_.size() < 2) return;
-  const std::size_t stride = std::max<std::size_t>(1, distinct_.size() / 2048);
-  std::vector<double> distances2((distinct_.size() + stride - 1) / stride);
-  parallel_for(distances2.size(), [&](std::size_t i) {
-    std::vector<Neighbour> found;
-    tree_.k_nearest(distinct_[i * stride], 2, found);
-    distances2[i] = found[1].distance2_m2;
-  });
-  const auto middle = distances2.begin() + static_cast<std::ptrdiff_t>(distances2.size() / 2);
-  std::nth_element(distances2.begin(), middle, distances2.end());
-  spacing_m_ = std::sqrt(*middle);
+std::vector<LocalFit> local_fits(std::span<const Eigen::Vector3d> points, const AnySearch& search,
+                                 std::size_t neighbours) {
+  return std::visit([&](const auto& tree) { return fits_by(points, tree, neighbours); }, search);
 }
 
-void LocalSurface::prepare(std::span<const std::uint32_t> indices) {
-  std::vector<std::uint32_t> missing;
-  for (const std::uint32_t i : indices) {
-    if (!made_[i]) missing.push_back(i);
-    made_[i] = true;
-  }
-  parallel_for(missing.size(),
-               [&](std::size_t i) { fits_[missing[i]] = fit_at(points_[missing[i]]); });
+std::vector<LocalFit> local_fits(std::span<const Eigen::Vector3d> points, const KdTree& search,
+                                 std::size_t neighbours) {
+  return fits_by(points, search, neighbours);
 }
 
-LocalFit LocalSurface::fit_at(const Eigen::Vector3d& point) const {
-  std::vector<Neighbour> found;
-  tree_.k_nearest(point, neighbours + 1, found);
-  LocalFit fit;
-  const std::size_t near = found.size() / 2 + 1;
-  if (near < least_points_of_fit) {
-    fit.shape = LocalShape::volume;
-    return fit;
-  }
-  const std::span<const Neighbour> all = found;
-  const Spread inner = spread_of(all.first(near), distinct_);
-  fit.shape = is_line(inner)      ? LocalShape::line
-              : is_surface(inner) ? LocalShape::surface
-                                  : LocalShape::volume;
-  fit.direction = inner.directions.col(fit.shape == LocalShape::line ? 2 : 0);
-  if (fit.shape != LocalShape::surface || found.size() - near < 3) return fit;
-  const Spread outer = spread_of(all.subspan(near), distinct_);
-  if (!is_line(outer)) fit.second_normal = outer.directions.col(0);
-  return fit;
+double spacing_m(std::span<const Eigen::Vector3d> points, const AnySearch& search) {
+  return std::visit([&](const auto& tree) { return spacing_by(points, tree); }, search);
+}
+
+double spacing_m(std::span<const Eigen::Vector3d> points, const KdTree& search) {
+  return spacing_by(points, search);
 }
 
 }  // namespace scan

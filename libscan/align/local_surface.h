@@ -1,47 +1,40 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// What the neighbours of a point say of the surface there: what alignment may believe of a normal.
+// What the neighbours of each point say of the surface there, and how far that can be believed.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "libscan/search/kd_tree.h"
+#include "libscan/search/search.h"
 
 namespace scan {
 
 enum class LocalShape : std::uint8_t { unknown, line, surface, volume };
 
 struct LocalFit {
-  LocalShape shape = LocalShape::unknown;
-  // Of the line, or normal of the surface (up to sign), from the nearer half of the neighbours.
+  // Of the line, or unit normal of the surface (up to sign); zero for the other shapes.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  // The normal once more, from the further half alone: its noise is independent. Zero: none.
-  Eigen::Vector3d second_normal = Eigen::Vector3d::Zero();
+  // A draw of the normal's error: half the difference of the normals that two halves of the
+  // neighbours give, whose noise is independent; the fit to both errs by as much.
+  Eigen::Vector3f tilt = Eigen::Vector3f::Zero();
+  // Distance to the farthest neighbour: beyond it the fit says nothing.
+  float reach_m = 0;
+  LocalShape shape = LocalShape::unknown;
 };
 
-// Fits are made when first asked for and kept. Repeated points count once.
-class LocalSurface {
- public:
-  explicit LocalSurface(std::span<const Eigen::Vector3d> points);
+// One per point. Fits over each point and the nearest to it, `neighbours` together (at least 6);
+// where these fix no shape, repeated points being one, or lie on a line, over four and sixteen
+// times as many. `search` is over `points`, which are finite.
+std::vector<LocalFit> local_fits(std::span<const Eigen::Vector3d> points, const AnySearch& search,
+                                 std::size_t neighbours);
+std::vector<LocalFit> local_fits(std::span<const Eigen::Vector3d> points, const KdTree& search,
+                                 std::size_t neighbours);
 
-  // Median distance of a point to its nearest other point, metres; 0 for fewer than two points.
-  double spacing_m() const { return spacing_m_; }
-
-  // Makes the fits of these points, so that `fit` may be read; not to be called from two threads.
-  void prepare(std::span<const std::uint32_t> indices);
-  const LocalFit& fit(std::uint32_t index) const { return fits_[index]; }
-
- private:
-  LocalFit fit_at(const Eigen::Vector3d& point) const;
-
-  std::span<const Eigen::Vector3d> points_;
-  std::vector<Eigen::Vector3d> distinct_;
-  KdTree tree_;
-  std::vector<LocalFit> fits_;
-  std::vector<bool> made_;
-  double spacing_m_ = 0;
-};
+// Median distance to the nearest other point, metres; 0 for fewer than two. From up to 2048 points.
+double spacing_m(std::span<const Eigen::Vector3d> points, const AnySearch& search);
+double spacing_m(std::span<const Eigen::Vector3d> points, const KdTree& search);
 
 }  // namespace scan

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "libscan/align/agreement.h"
-#include "libscan/align/pairs.h"
 #include "libscan/align/placement.h"
 #include "libscan/align/scan_pairs.h"
 #include "libscan/core/error.h"
@@ -120,7 +119,8 @@ double Alignment::thinning_side_m(const std::vector<PointCloud>& finite) const {
   std::vector<double> spacings(finite.size());
   parallel_for(
       finite.size(),
-      [&](std::size_t i) { spacings[i] = LocalSurface(finite[i].points).spacing_m(); }, 1);
+      [&](std::size_t i) { spacings[i] = spacing_m(finite[i].points, KdTree(finite[i].points)); },
+      1);
   std::erase(spacings, 0);
   return thin_in_spacings * median(std::move(spacings));
 }
@@ -173,8 +173,7 @@ DataFrame Alignment::shared_frame() const {
 JointGates Alignment::first_gates() const {
   double largest_m = 0;
   for (std::size_t i = 0; i < scans_.size(); ++i)
-    if (placed_[i])
-      largest_m = std::max({largest_m, scans_[i]->surface.spacing_m(), result_.scans[i].rms_m});
+    if (placed_[i]) largest_m = std::max({largest_m, scans_[i]->spacing_m, result_.scans[i].rms_m});
   const double given_m = options_.icp.max_pair_distance_m;
   return {.distance_m = given_m > 0 ? given_m : gate_in_spacings * largest_m,
           .least_cosine = std::cos(options_.icp.max_normal_angle_rad),

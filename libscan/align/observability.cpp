@@ -27,51 +27,32 @@ Vector6 twist_row(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal) {
   return row;
 }
 
-struct Information {
-  Matrix6 apparent = Matrix6::Zero();
-  Matrix6 noise = Matrix6::Zero();
-  double points = 0, noise_points = 0;
-
-  void add_plane(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal, const LocalFit& fit) {
-    const Vector6 row = twist_row(arm, normal);
-    apparent += row * row.transpose();
-    ++points;
-    if (fit.second_normal.isZero()) return;
-    const double sign = normal.dot(fit.second_normal) < 0 ? -1 : 1;
-    const Vector6 error = twist_row(arm, normal - sign * fit.second_normal);
-    noise += error * error.transpose();
-    ++noise_points;
-  }
-
-  // Fixes the coordinates along the columns of `projector`.
-  void add_mark(const Eigen::Vector3d& arm, const Eigen::Matrix3d& projector) {
-    Eigen::Matrix<double, 3, 6> m;
-    m << -cross_matrix(arm), Eigen::Matrix3d::Identity();
-    apparent += m.transpose() * projector * m;
-    ++points;
-  }
-};
-
 // Whether most of the points lie on a surface. Then those that do not are its edges and say
 // nothing; else the points are marks of their own.
-bool is_surface(std::span<const std::uint32_t> used, const LocalSurface& surface) {
+bool is_surface(std::span<const std::uint32_t> used, std::span<const LocalFit> fits) {
   std::size_t count = 0;
-  for (const std::uint32_t i : used) count += surface.fit(i).shape == LocalShape::surface;
+  for (const std::uint32_t i : used) count += fits[i].shape == LocalShape::surface;
   return 2 * count >= used.size();
 }
 
-Information gather(std::span<const std::uint32_t> used, std::span<const Eigen::Vector3d> points,
-                   std::span<const Eigen::Vector3d> normals, const LocalSurface& surface,
-                   const DataFrame& frame) {
-  Information sum;
-  const bool marks = normals.empty() && !is_surface(used, surface);
+std::optional<Eigen::Vector3d> tilt_of(const LocalFit& fit) {
+  if (fit.shape != LocalShape::surface) return std::nullopt;
+  return fit.tilt.cast<double>();
+}
+
+MotionInformation gather(std::span<const std::uint32_t> used,
+                         std::span<const Eigen::Vector3d> points,
+                         std::span<const Eigen::Vector3d> normals, std::span<const LocalFit> fits,
+                         const DataFrame& frame) {
+  MotionInformation sum;
+  const bool marks = normals.empty() && !is_surface(used, fits);
   for (const std::uint32_t i : used) {
     const Eigen::Vector3d arm = (points[i] - frame.centre) / frame.size_m;
-    const LocalFit& fit = surface.fit(i);
+    const LocalFit& fit = fits[i];
     if (!normals.empty()) {
-      sum.add_plane(arm, normals[i], fit);
+      sum.add_plane(arm, normals[i], tilt_of(fit));
     } else if (fit.shape == LocalShape::surface) {
-      sum.add_plane(arm, fit.direction, fit);
+      sum.add_plane(arm, fit.direction, tilt_of(fit));
     } else if (marks && fit.shape != LocalShape::unknown) {
       const Eigen::Vector3d along =
           fit.shape == LocalShape::line ? fit.direction : Eigen::Vector3d::Zero();
@@ -111,20 +92,35 @@ std::string name_turn(const Vector6& twist, const DataFrame& frame, const Eigen:
 
 }  // namespace
 
-TwistBasis weak_motions(std::span<const std::uint32_t> used,
-                        std::span<const Eigen::Vector3d> points,
-                        std::span<const Eigen::Vector3d> normals, LocalSurface& surface,
-                        const DataFrame& frame) {
-  const std::size_t stride = std::max<std::size_t>(1, used.size() / most_points);
-  std::vector<std::uint32_t> sample;
-  for (std::size_t i = 0; i < used.size(); i += stride) sample.push_back(used[i]);
-  surface.prepare(sample);
-  const Information sum = gather(sample, points, normals, surface, frame);
-  Matrix6 limit = rounding_share * std::max(sum.apparent.trace() / 6, 1e-300) * Matrix6::Identity();
-  if (sum.noise_points > 0) limit += noise_multiple * sum.points / sum.noise_points * sum.noise;
+void MotionInformation::add_plane(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal,
+                                  const std::optional<Eigen::Vector3d>& error) {
+  const Vector6 row = twist_row(arm, normal);
+  apparent_ += row * row.transpose();
+  ++planes_;
+  if (!error) return;
+  const Vector6 off = twist_row(arm, *error);
+  noise_ += off * off.transpose();
+  ++drawn_;
+}
+
+void MotionInformation::add_mark(const Eigen::Vector3d& arm, const Eigen::Matrix3d& projector) {
+  Eigen::Matrix<double, 3, 6> m;
+  m << -cross_matrix(arm), Eigen::Matrix3d::Identity();
+  apparent_ += m.transpose() * projector * m;
+}
+
+Matrix6 MotionInformation::noise() const {
+  return drawn_ > 0 ? Matrix6(planes_ / drawn_ * noise_) : Matrix6::Zero();
+}
+
+TwistBasis weak_motions(const MotionInformation& information) {
+  const Matrix6& apparent = information.apparent();
+  const Matrix6 limit =
+      rounding_share * std::max(apparent.trace() / 6, 1e-300) * Matrix6::Identity() +
+      noise_multiple * information.noise();
   // A v = mu limit v, weak where mu < 1.
   const Eigen::LLT<Matrix6> factor(limit);
-  Matrix6 whitened = factor.matrixL().solve(sum.apparent);
+  Matrix6 whitened = factor.matrixL().solve(apparent);
   whitened = factor.matrixL().solve(Matrix6(whitened.transpose()));
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(0.5 * (whitened + whitened.transpose()));
   const Eigen::Index count = (solver.eigenvalues().array() < 1).count();
@@ -133,6 +129,16 @@ TwistBasis weak_motions(std::span<const std::uint32_t> used,
   for (Eigen::Index i = 0; i < count; ++i) weak.col(i).normalize();
   const Eigen::HouseholderQR<TwistBasis> qr(weak);
   return qr.householderQ() * TwistBasis::Identity(6, count);
+}
+
+TwistBasis weak_motions(std::span<const std::uint32_t> used,
+                        std::span<const Eigen::Vector3d> points,
+                        std::span<const Eigen::Vector3d> normals, std::span<const LocalFit> fits,
+                        const DataFrame& frame) {
+  const std::size_t stride = std::max<std::size_t>(1, used.size() / most_points);
+  std::vector<std::uint32_t> sample;
+  for (std::size_t i = 0; i < used.size(); i += stride) sample.push_back(used[i]);
+  return weak_motions(gather(sample, points, normals, fits, frame));
 }
 
 std::vector<std::string> name_motions(const TwistBasis& motions, const DataFrame& frame,

@@ -2,161 +2,154 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/align/pairs.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "libscan/align/median.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {
 namespace {
 
-constexpr std::size_t chunk = 1024;
-// The gate in median pair distances; a normal distribution has 96 % below three medians.
-constexpr double gate_in_medians = 3;
+constexpr std::size_t chunk = 512;
+// Beyond three scales the loss weighs a residual with 1 % and its slope falls.
+constexpr double most_scales = 3;
+// Thickness of the planes of generalised ICP in units of their extent, where the scan does not tell
+// its noise: the root of the 1e-3 of Segal et al., section IV.
+constexpr double usual_thickness = 0.0316;
 
-// The value below which `share` of them lie; reorders them.
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return 0;
-  const double place = std::ceil(share * static_cast<double>(values.size())) - 1;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max(0.0, place));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+// Median over the cloud of the standard deviation along the normal; 0: not told.
+double noise_across_m(const PreparedCloud& cloud) {
+  std::vector<double> sigmas_m;
+  for (std::size_t i = 0; i < cloud.covariances.size(); ++i)
+    if (!cloud.normals[i].isZero(0))
+      sigmas_m.push_back(std::sqrt(cloud.normals[i].dot(cloud.covariances[i] * cloud.normals[i])));
+  return median(std::move(sigmas_m));
 }
 
 }  // namespace
 
-LocalCloud localise(const PointCloud& cloud) {
-  check(cloud);
-  LocalCloud local;
-  const std::vector<std::uint32_t> valid = finite_points(cloud);
-  local.invalid_points = cloud.size() - valid.size();
-  if (valid.empty()) return local;
-  const Eigen::Vector3d& first = cloud.points[valid[0]];
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const std::uint32_t i : valid) sum += cloud.points[i] - first;
-  local.origin = first + sum / static_cast<double>(valid.size());
-  double sum2 = 0;
-  for (const std::uint32_t i : valid) {
-    local.points.push_back(cloud.points[i] - local.origin);
-    sum2 += local.points.back().squaredNorm();
-    if (!cloud.normals.empty()) local.normals.push_back(cloud.normals[i].normalized());
-  }
-  local.radius_m = std::sqrt(sum2 / static_cast<double>(valid.size()));
-  return local;
-}
-
-Pose with_proper_rotation(const Pose& pose) {
-  const Eigen::Matrix3d nearest = nearest_rotation(pose.linear());
-  const bool proper = (pose.linear() - nearest).norm() < 1e-14;
-  return proper ? pose : make_pose(nearest, pose.translation());
-}
-
-Pose local_pose(const Pose& target_from_source, const LocalCloud& source,
-                const LocalCloud& target) {
-  return make_pose(target_from_source.linear(), target_from_source * source.origin - target.origin);
-}
-
-Pose global_pose(const Pose& local, const LocalCloud& source, const LocalCloud& target) {
-  return make_pose(local.linear(),
-                   target.origin + local.translation() - local.linear() * source.origin);
-}
-
-PairFinder::PairFinder(const LocalCloud& source, const LocalCloud& target,
+PairFinder::PairFinder(const PreparedCloud& source, const PreparedCloud& target,
                        const IcpOptions& options)
-    : source_(source),
-      target_(target),
-      options_(options),
-      target_search_(make_search(options.search, target.points)),
-      source_search_(source.points),
-      target_surface_(target.points) {}
+    : source_(source), target_(target), options_(options) {
+  if (options.method != IcpMethod::plane_to_plane) return;
+  spread_m_ = std::max(source.spacing_m, target.spacing_m);
+  if (!(spread_m_ > 0)) spread_m_ = 1;  // all the same point: any unit will do
+  noise_m_ =
+      std::max({noise_across_m(source), noise_across_m(target), usual_thickness * spread_m_});
+}
 
-std::vector<Match> PairFinder::find(const Pose& pose, double max_distance_m) const {
-  const bool planes = options_.method == IcpMethod::point_to_plane;
-  const bool compare_normals = !source_.normals.empty() && !target_.normals.empty();
+void PairFinder::find(const Pose& pose, std::span<const std::uint32_t> sample,
+                      std::vector<Match>& matches) const {
+  matches.resize(sample.size());
+  const double most_m =
+      options_.max_pair_distance_m > 0 ? options_.max_pair_distance_m : unlimited_m;
   const double least_cosine = std::cos(options_.max_normal_angle_rad);
-  std::vector<Match> matches(source_.points.size());
-  const auto match_all = [&](const auto& search) {
-    const auto match_one = [&](std::size_t i) {
-      const Eigen::Vector3d moved = pose * source_.points[i];
-      const std::optional<Neighbour> found = search.nearest(moved, max_distance_m);
-      if (!found) return;
-      const double distance_m = std::sqrt(found->distance2_m2);
-      const Eigen::Vector3d normal =
-          target_.normals.empty() ? Eigen::Vector3d::Zero().eval() : target_.normals[found->index];
-      if (planes && normal.isZero()) return;
-      if (compare_normals && !normal.isZero() && !source_.normals[i].isZero() &&
-          (pose.linear() * source_.normals[i]).dot(normal) < least_cosine)
-        return;
-      const PointPair pair{moved, target_.points[found->index], normal};
-      const double residual_m = planes ? std::abs(PointToPlane::value(pair)) : distance_m;
-      matches[i] = {found->index, distance_m, residual_m};
-    };
-    parallel_for(source_.points.size(), match_one, chunk);
+  const bool signs = source_.oriented && target_.oriented;
+  const bool planes =
+      options_.method == IcpMethod::point_to_plane || options_.method == IcpMethod::symmetric;
+  const auto passes = [&](std::uint32_t i, std::uint32_t j, const Eigen::Vector3d& apart) {
+    const Eigen::Vector3d& there = target_.normals[j];
+    if (there.isZero(0)) return !planes;
+    const double across_m = apart.dot(there), reach_m = target_.fits[j].reach_m;
+    if (apart.squaredNorm() - across_m * across_m > reach_m * reach_m) return false;
+    const Eigen::Vector3d& here = source_.normals[i];
+    if (here.isZero(0)) return true;
+    const double cosine = (pose.linear() * here).dot(there);
+    return (signs ? cosine : std::abs(cosine)) >= least_cosine;
   };
-  std::visit(match_all, target_search_);
-  return matches;
+  const auto find_all = [&](const auto& search) {
+    parallel_for(
+        sample.size(),
+        [&](std::size_t k) {
+          const std::uint32_t i = sample[k];
+          const Eigen::Vector3d moved = pose * source_.points[i];
+          const auto found = search.nearest(moved, most_m, matches[k].target);
+          matches[k] = {};
+          if (!found) return;
+          matches[k].target = found->index;
+          if (passes(i, found->index, moved - target_.points[found->index]))
+            matches[k].residual_m = residual_m(pose, {i, found->index});
+        },
+        chunk);
+  };
+  std::visit(find_all, target_.search);
 }
 
-double PairFinder::mutual_median_m(const Pose& pose, const std::vector<Match>& matches) const {
-  const std::size_t stride = std::max<std::size_t>(1, matches.size() / 2048);
-  const Pose source_from_target = pose.inverse();
-  std::vector<double> distances((matches.size() + stride - 1) / stride, -1);
-  parallel_for(distances.size(), [&](std::size_t i) {
-    const Match& match = matches[i * stride];
-    if (match.target == no_partner) return;
-    const auto back = source_search_.nearest(source_from_target * target_.points[match.target]);
-    // Not by index: repeated points are each other's equal; and rounding may part equal distances.
-    if (std::sqrt(back->distance2_m2) >= match.distance_m * (1 - 1e-9))
-      distances[i] = match.distance_m;
-  });
-  std::erase(distances, -1);
-  return quantile(distances, 0.5);
-}
-
-Gates PairFinder::tightened(const Gates& previous, const Pose& pose,
-                            const std::vector<Match>& matches) const {
-  Gates gates;
-  gates.distance_m = options_.max_pair_distance_m;
-  if (!(gates.distance_m > 0)) {
-    const double least = std::max(target_surface_.spacing_m(), 1e-12 * target_.radius_m);
-    gates.distance_m = gate_in_medians * std::max(mutual_median_m(pose, matches), least);
+double PairFinder::residual_m(const Pose& pose, const Couple& couple) const {
+  const PointPair points = pair(pose, couple);
+  switch (options_.method) {
+    case IcpMethod::point_to_point:
+      return PointToPoint::value(points).norm();
+    case IcpMethod::point_to_plane:
+      return std::abs(PointToPlane::value(points));
+    case IcpMethod::symmetric:
+      return std::abs(Symmetric::value(points));
+    case IcpMethod::plane_to_plane:
+      break;
   }
-  gates.distance_m = std::min(gates.distance_m, previous.distance_m);
-  gates.residual_m = std::min(previous.residual_m, gates.distance_m);
-  if (!(options_.trim_fraction > 0)) return gates;
-  std::vector<double> residuals;
+  const Eigen::Vector3d apart = points.moved - points.target;
+  return std::sqrt(apart.dot(metric(pose, couple) * apart));
+}
+
+PointPair PairFinder::pair(const Pose& pose, const Couple& couple) const {
+  const Eigen::Vector3d& normal = target_.normals[couple.target];
+  Eigen::Vector3d own = pose.linear() * source_.normals[couple.source];
+  if (own.isZero(0)) own = normal;
+  return {pose * source_.points[couple.source], target_.points[couple.target], normal,
+          own.dot(normal) < 0 ? Eigen::Vector3d(-own) : own};
+}
+
+// Segal et al. 2009, section III.B: known across the surface as the scan tells, along it only that
+// the partner is some point nearby. A point without a surface is uncertain to all sides.
+Eigen::Matrix3d PairFinder::covariance_m2(const PreparedCloud& cloud, std::uint32_t i) const {
+  const Eigen::Vector3d& n = cloud.normals[i];
+  Eigen::Matrix3d covariance = spread_m_ * spread_m_ * Eigen::Matrix3d::Identity();
+  covariance -= spread_m_ * spread_m_ * n * n.transpose();
+  if (cloud.covariances.empty()) return covariance + noise_m_ * noise_m_ * n * n.transpose();
+  // Noise below a thousandth of the spacing would only make the sum singular.
+  const double least_m2 = 1e-6 * spread_m_ * spread_m_;
+  return covariance + cloud.covariances[i] + least_m2 * Eigen::Matrix3d::Identity();
+}
+
+// Scaled so that r is the distance where two planes of usual noise lie parallel.
+Eigen::Matrix3d PairFinder::metric(const Pose& pose, const Couple& couple) const {
+  const Eigen::Matrix3d& turn = pose.linear();
+  const Eigen::Matrix3d sum = covariance_m2(target_, couple.target) +
+                              turn * covariance_m2(source_, couple.source) * turn.transpose();
+  return 2 * noise_m_ * noise_m_ * sum.inverse();
+}
+
+double PairFinder::median_residual_m(std::span<const Match> matches) const {
+  std::vector<double> residuals_m;
+  residuals_m.reserve(matches.size());
   for (const Match& match : matches)
-    if (match.target != no_partner && match.distance_m <= gates.distance_m)
-      residuals.push_back(match.residual_m);
-  gates.residual_m = std::min(gates.residual_m, quantile(residuals, 1 - options_.trim_fraction));
-  return gates;
+    if (match.residual_m < unlimited_m) residuals_m.push_back(match.residual_m);
+  return median(std::move(residuals_m));
 }
 
-std::vector<std::uint32_t> PairFinder::kept(const std::vector<Match>& matches,
-                                            const Gates& gates) const {
-  std::vector<std::uint32_t> indices;
-  for (std::uint32_t i = 0; i < matches.size(); ++i)
-    if (matches[i].target != no_partner && matches[i].distance_m <= gates.distance_m &&
-        matches[i].residual_m <= gates.residual_m)
-      indices.push_back(i);
-  return indices;
+double PairFinder::objective_m2(std::span<const Match> matches, const Weighing& weighing) const {
+  const double sum_m2 =
+      ordered_sum(matches.size(), chunk, 0.0, [&](std::size_t begin, std::size_t end) {
+        double part_m2 = 0;
+        for (std::size_t k = begin; k < end; ++k)
+          part_m2 += weighing.loss.rho_m2(std::min(matches[k].residual_m, weighing.limit_m));
+        return part_m2;
+      });
+  return sum_m2 / static_cast<double>(matches.size());
 }
 
-double PairFinder::cost_m2(const std::vector<Match>& matches, const Gates& gates) const {
-  const double beyond_m2 = gates.residual_m * gates.residual_m;
-  double sum = 0;
-  for (const Match& match : matches) {
-    const bool paired = match.target != no_partner && match.distance_m <= gates.distance_m;
-    sum += paired ? std::min(match.residual_m * match.residual_m, beyond_m2) : beyond_m2;
-  }
-  return sum / static_cast<double>(matches.size());
-}
-
-PointPair PairFinder::pair(const Pose& pose, const std::vector<Match>& matches,
-                           std::uint32_t i) const {
-  const std::uint32_t j = matches[i].target;
-  return {pose * source_.points[i], target_.points[j],
-          target_.normals.empty() ? Eigen::Vector3d::Zero().eval() : target_.normals[j]};
+std::vector<Couple> PairFinder::kept(std::span<const std::uint32_t> sample,
+                                     std::span<const Match> matches,
+                                     const Weighing& weighing) const {
+  const double most_m = std::min(most_scales * weighing.loss.scale_m, weighing.limit_m);
+  std::vector<Couple> couples;
+  couples.reserve(matches.size());
+  for (std::size_t k = 0; k < matches.size(); ++k)
+    if (matches[k].residual_m <= most_m)
+      couples.push_back({sample[k], matches[k].target, matches[k].residual_m});
+  return couples;
 }
 
 }  // namespace scan

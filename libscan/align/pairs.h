@@ -4,80 +4,74 @@
 // costs.
 #pragma once
 
-#include <limits>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "libscan/align/icp.h"
-#include "libscan/align/local_surface.h"
+#include "libscan/align/loss.h"
 #include "libscan/align/residual.h"
 
 namespace scan {
 
-// The finite points of a cloud relative to their mean, so that far coordinates cost no digits.
-struct LocalCloud {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> points;
-  std::vector<Eigen::Vector3d> normals;  // unit, (0,0,0) unknown; or empty
-  double radius_m = 0;                   // root mean square distance from the mean
-  std::size_t invalid_points = 0;
-};
-
-LocalCloud localise(const PointCloud& cloud);
-
-// The pose with the nearest rotation in place of its matrix; a rotation to rounding keeps its bits.
-Pose with_proper_rotation(const Pose& pose);
-
-// A pose between the clouds' own frames as one between their local frames, and back.
-Pose local_pose(const Pose& target_from_source, const LocalCloud& source, const LocalCloud& target);
-Pose global_pose(const Pose& local, const LocalCloud& source, const LocalCloud& target);
-
-inline constexpr std::uint32_t no_partner = std::numeric_limits<std::uint32_t>::max();
-
-// One per source point.
+// The partner of a source point, and how far off it is.
 struct Match {
-  std::uint32_t target = no_partner;
-  double distance_m = 0;
-  double residual_m = 0;  // size of what the method minimises
+  std::uint32_t target = no_point;  // nearest, also where it passes no gate: the next guess
+  double residual_m = unlimited_m;  // size of what the method minimises; unlimited: no pair
 };
 
-// A match farther than `distance_m` is none; a residual beyond `residual_m` counts as that much.
-struct Gates {
-  double distance_m = unlimited_m;
-  double residual_m = unlimited_m;
+// Two points that count.
+struct Couple {
+  std::uint32_t source = 0, target = 0;
+  double residual_m = 0;
 };
 
-// Both clouds must outlive it.
+// What counts, and how much: the loss of a residual, up to the limit.
+struct Weighing {
+  WelschLoss loss;
+  double limit_m = unlimited_m;
+};
+
+// All poses are local ones (prepared_cloud.h). Both clouds must outlive it.
 class PairFinder {
  public:
-  PairFinder(const LocalCloud& source, const LocalCloud& target, const IcpOptions& options);
+  PairFinder(const PreparedCloud& source, const PreparedCloud& target, const IcpOptions& options);
 
-  std::vector<Match> find(const Pose& pose, double max_distance_m) const;
+  // Writes matches[k], the partner of source point sample[k] at `pose`. What was there before, if
+  // anything, is taken for a guess. A pair lies within the options' distance and angle of normals,
+  // where both are known, and along the target's surface within the reach of its local fit: beyond
+  // the rim of a scan the nearest point is one of the rim, which says nothing.
+  void find(const Pose& pose, std::span<const std::uint32_t> sample,
+            std::vector<Match>& matches) const;
 
-  // Gates that fit the matches at `pose`, never wider than `previous`. The distance is the given
-  // one, or three times the median distance of those matches that are each other's nearest (what
-  // has no counterpart pairs one-sidedly and so does not widen the gate), but not less than three
-  // times the target's spacing. The residual leaves out the worst `trim_fraction`.
-  Gates tightened(const Gates& previous, const Pose& pose, const std::vector<Match>& matches) const;
+  // Median residual of the pairs, metres; 0 for none.
+  double median_residual_m(std::span<const Match> matches) const;
 
-  // Source points whose matches pass both gates.
-  std::vector<std::uint32_t> kept(const std::vector<Match>& matches, const Gates& gates) const;
+  // Mean loss over the sample, m^2; what is no pair costs as much as the farthest.
+  double objective_m2(std::span<const Match> matches, const Weighing& weighing) const;
 
-  // Mean over all source points of the squared residual, cut at the gate, m^2; the objective.
-  double cost_m2(const std::vector<Match>& matches, const Gates& gates) const;
+  // The pairs that the loss lets count.
+  std::vector<Couple> kept(std::span<const std::uint32_t> sample, std::span<const Match> matches,
+                           const Weighing& weighing) const;
 
-  PointPair pair(const Pose& pose, const std::vector<Match>& matches, std::uint32_t i) const;
-  LocalSurface& surface() { return target_surface_; }
+  // The points and normals of a pair, the normals on one side.
+  PointPair pair(const Pose& pose, const Couple& couple) const;
+
+  // Of moved - target, as plane-to-plane has it: r^2 = d^T W d, metres^2.
+  Eigen::Matrix3d metric(const Pose& pose, const Couple& couple) const;
+
+  const PreparedCloud& source() const { return source_; }
+  const PreparedCloud& target() const { return target_; }
+  IcpMethod method() const { return options_.method; }
 
  private:
-  double mutual_median_m(const Pose& pose, const std::vector<Match>& matches) const;
+  double residual_m(const Pose& pose, const Couple& couple) const;
+  Eigen::Matrix3d covariance_m2(const PreparedCloud& cloud, std::uint32_t i) const;
 
-  const LocalCloud& source_;
-  const LocalCloud& target_;
-  IcpOptions options_;
-  AnySearch target_search_;
-  KdTree source_search_;
-  LocalSurface target_surface_;
+  const PreparedCloud& source_;
+  const PreparedCloud& target_;
+  const IcpOptions& options_;
+  double spread_m_ = 0;  // along the surfaces, see metric
+  double noise_m_ = 0;   // across them
 };
 
 }  // namespace scan

@@ -13,11 +13,13 @@
 
 namespace scan {
 
-// A source point carried into the target's frame, its partner and the partner's unit normal.
+// A source point carried into the target's frame, its partner, the partner's unit normal and the
+// source's own, carried along.
 struct PointPair {
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moved_normal = Eigen::Vector3d::Zero();
 };
 
 // r = moved - target, metres (Besl and McKay 1992).
@@ -30,6 +32,14 @@ struct PointToPoint {
 // r = n . (moved - target), metres (Chen and Medioni 1992): the whole dot product, so a motion
 // within the plane costs nothing.
 struct PointToPlane {
+  static constexpr int dimension = 1;
+  static double value(const PointPair& pair);
+  static Eigen::Matrix<double, 1, 6> jacobian(const PointPair& pair, const Eigen::Vector3d& centre);
+};
+
+// r = (n + m) / 2 . (moved - target), metres, m the source's normal turned to n's side
+// (Rusinkiewicz 2019, eq. 6, halved): zero wherever both points lie on one circular arc.
+struct Symmetric {
   static constexpr int dimension = 1;
   static double value(const PointPair& pair);
   static Eigen::Matrix<double, 1, 6> jacobian(const PointPair& pair, const Eigen::Vector3d& centre);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "libscan/align/loss.h"
-#include "libscan/align/pairs.h"
+#include "libscan/align/residual.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {
@@ -134,12 +134,12 @@ ScanPairForm Round::form_of(const DirectedPairs& pairs, double tukey_limit_m) co
 }
 
 void Round::withhold_weak(const DirectedPairs& pairs, ScanPairForm& form) const {
-  PreparedScan& target = *scans_[pairs.target];
+  const PreparedScan& target = *scans_[pairs.target];
   // In the target's own frame, where its fits are kept; then carried over to the shared frame.
   const Pose& pose = poses_[pairs.target];
   const DataFrame own{pose.inverse() * frame_.centre, frame_.size_m};
   TwistBasis weak =
-      weak_motions(pairs.to, target.cloud.points, target.cloud.normals, target.surface, own);
+      weak_motions(pairs.to, target.cloud.points, target.cloud.normals, target.fits, own);
   if (weak.cols() == 0) return;
   weak.topRows<3>() = (pose.linear() * weak.topRows<3>()).eval();
   weak.bottomRows<3>() = (pose.linear() * weak.bottomRows<3>()).eval();
@@ -187,7 +187,10 @@ JointPairs Round::run(const std::vector<ScanCouple>& couples) {
 }  // namespace
 
 PreparedScan::PreparedScan(PointCloud thinned)
-    : cloud(std::move(thinned)), search(cloud.points), surface(cloud.points) {}
+    : cloud(std::move(thinned)),
+      search(cloud.points),
+      fits(local_fits(cloud.points, search, 16)),
+      spacing_m(scan::spacing_m(cloud.points, search)) {}
 
 JointPairs pair_scans(const std::vector<std::unique_ptr<PreparedScan>>& scans,
                       const std::vector<Pose>& poses, const std::vector<ScanCouple>& couples,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libscan/align/joint_refinement.h"
+#include "libscan/align/prepared_cloud.h"
 
 namespace scan {
 
@@ -16,7 +17,8 @@ struct PreparedScan {
   explicit PreparedScan(PointCloud thinned);
   PointCloud cloud;
   KdTree search;
-  LocalSurface surface;
+  std::vector<LocalFit> fits;
+  double spacing_m = 0;
 };
 
 using ScanCouple = std::pair<std::size_t, std::size_t>;

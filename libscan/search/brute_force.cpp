@@ -12,6 +12,7 @@ struct BruteForce::Tree {
 
   template <class Collector>
   void visit(const Eigen::Vector3d& query, Collector& collector) const {
+    if (!query.allFinite()) return;
     for (std::size_t i = 0; i < points.size(); ++i)
       collector.offer({index[i], squared_distance_m2(points[i], query)});
   }
@@ -33,8 +34,8 @@ std::size_t BruteForce::size() const {
   return tree_->points.size();
 }
 
-std::optional<Neighbour> BruteForce::nearest(const Eigen::Vector3d& query,
-                                             double max_distance_m) const {
+std::optional<Neighbour> BruteForce::nearest(const Eigen::Vector3d& query, double max_distance_m,
+                                             std::uint32_t) const {
   NearestCollector collector(max_distance_m);
   tree_->visit(query, collector);
   return collector.take();
@@ -44,6 +45,7 @@ void BruteForce::k_nearest(const Eigen::Vector3d& query, std::size_t k,
                            std::vector<Neighbour>& found) const {
   // By sorting all, not by the collector of the other models, for which this is the oracle.
   found.clear();
+  if (!query.allFinite()) return;
   for (std::size_t i = 0; i < tree_->points.size(); ++i)
     found.push_back({tree_->index[i], squared_distance_m2(tree_->points[i], query)});
   const std::size_t kept = std::min(k, found.size());

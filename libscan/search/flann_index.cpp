@@ -49,7 +49,7 @@ struct FlannIndex::Tree {
 
   template <class Collector>
   void visit(const Eigen::Vector3d& query, Collector& collector) const {
-    if (!index || collector.limit2_m2() < 0) return;
+    if (!index || collector.limit2_m2() < 0 || !query.allFinite()) return;
     Bridge<Collector> bridge(points, original, query, collector);
     index->findNeighbors(bridge, query.data(), flann::SearchParams());
   }
@@ -75,8 +75,8 @@ std::size_t FlannIndex::size() const {
   return tree_->points.size();
 }
 
-std::optional<Neighbour> FlannIndex::nearest(const Eigen::Vector3d& query,
-                                             double max_distance_m) const {
+std::optional<Neighbour> FlannIndex::nearest(const Eigen::Vector3d& query, double max_distance_m,
+                                             std::uint32_t) const {
   NearestCollector collector(max_distance_m);
   tree_->visit(query, collector);
   return collector.take();

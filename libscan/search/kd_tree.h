@@ -1,33 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// The default neighbour search: a kd-tree with small leaves.
+// The default neighbour search: a kd-tree of eight children a node and full leaves of sixteen.
 #pragma once
 
-#include <memory>
-
-#include "libscan/search/neighbour_search.h"
+#include "libscan/search/box_search.h"
 
 namespace scan {
 
 // Models NeighbourSearch.
-class KdTree {
+class KdTree : public BoxSearch {
  public:
   explicit KdTree(std::span<const Eigen::Vector3d> points);
-  ~KdTree();
-  KdTree(KdTree&&) noexcept;
-  KdTree& operator=(KdTree&&) noexcept;
-
-  std::size_t size() const;
-  std::optional<Neighbour> nearest(const Eigen::Vector3d& query,
-                                   double max_distance_m = unlimited_m) const;
-  void k_nearest(const Eigen::Vector3d& query, std::size_t k, std::vector<Neighbour>& found) const;
-  void within(const Eigen::Vector3d& query, double radius_m, std::vector<Neighbour>& found) const;
-
- private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
 };
-
-static_assert(NeighbourSearch<KdTree>);
 
 }  // namespace scan

@@ -3,31 +3,14 @@
 // Neighbour search in an octree.
 #pragma once
 
-#include <memory>
-
-#include "libscan/search/neighbour_search.h"
+#include "libscan/search/box_search.h"
 
 namespace scan {
 
 // Models NeighbourSearch.
-class Octree {
+class Octree : public BoxSearch {
  public:
   explicit Octree(std::span<const Eigen::Vector3d> points);
-  ~Octree();
-  Octree(Octree&&) noexcept;
-  Octree& operator=(Octree&&) noexcept;
-
-  std::size_t size() const;
-  std::optional<Neighbour> nearest(const Eigen::Vector3d& query,
-                                   double max_distance_m = unlimited_m) const;
-  void k_nearest(const Eigen::Vector3d& query, std::size_t k, std::vector<Neighbour>& found) const;
-  void within(const Eigen::Vector3d& query, double radius_m, std::vector<Neighbour>& found) const;
-
- private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
 };
-
-static_assert(NeighbourSearch<Octree>);
 
 }  // namespace scan

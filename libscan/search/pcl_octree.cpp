@@ -102,10 +102,10 @@ std::size_t PclOctree::size() const {
   return tree_->points_m.size();
 }
 
-std::optional<Neighbour> PclOctree::nearest(const Eigen::Vector3d& query,
-                                            double max_distance_m) const {
+std::optional<Neighbour> PclOctree::nearest(const Eigen::Vector3d& query, double max_distance_m,
+                                            std::uint32_t) const {
   NearestCollector collector(max_distance_m);
-  if (tree_->search && max_distance_m >= 0)
+  if (tree_->search && max_distance_m >= 0 && query.allFinite())
     tree_->visit(query, std::min(max_distance_m, tree_->radius_of(query, 1)), collector);
   return collector.take();
 }
@@ -113,14 +113,15 @@ std::optional<Neighbour> PclOctree::nearest(const Eigen::Vector3d& query,
 void PclOctree::k_nearest(const Eigen::Vector3d& query, std::size_t k,
                           std::vector<Neighbour>& found) const {
   NearestKCollector collector(k, found);
-  if (tree_->search && k > 0) tree_->visit(query, tree_->radius_of(query, k), collector);
+  if (tree_->search && k > 0 && query.allFinite())
+    tree_->visit(query, tree_->radius_of(query, k), collector);
   collector.finish();
 }
 
 void PclOctree::within(const Eigen::Vector3d& query, double radius_m,
                        std::vector<Neighbour>& found) const {
   WithinCollector collector(radius_m, found);
-  if (tree_->search && radius_m >= 0) tree_->visit(query, radius_m, collector);
+  if (tree_->search && radius_m >= 0 && query.allFinite()) tree_->visit(query, radius_m, collector);
   collector.finish();
 }
 

@@ -21,7 +21,7 @@ struct Found {
 Found weak_of(const PointCloud& cloud, bool with_normals) {
   std::vector<std::uint32_t> all(cloud.size());
   std::iota(all.begin(), all.end(), 0u);
-  LocalSurface surface(cloud.points);
+  const std::vector<LocalFit> fits = local_fits(cloud.points, KdTree(cloud.points), 16);
   Vector3d mean = Vector3d::Zero();
   for (const Vector3d& x : cloud.points) mean += x / double(cloud.size());
   double sum2 = 0;
@@ -29,7 +29,7 @@ Found weak_of(const PointCloud& cloud, bool with_normals) {
   const DataFrame frame{mean, std::sqrt(sum2 / double(cloud.size()))};
   const std::span<const Vector3d> none;
   Found found;
-  found.weak = weak_motions(all, cloud.points, with_normals ? cloud.normals : none, surface, frame);
+  found.weak = weak_motions(all, cloud.points, with_normals ? cloud.normals : none, fits, frame);
   found.names = name_motions(found.weak, frame, Vector3d::Zero());
   return found;
 }

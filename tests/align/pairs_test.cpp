@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "tests/align/test_shapes.h"
 
 namespace scan {
@@ -11,63 +13,112 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(LocalCloud, PosesGoThereAndBack) {
-  RandomStream random(1, 0, 0);
-  const PointCloud a = test::bumpy_surface(100, 1),
-                   b = transformed(test::random_pose(random, 1, 5), a);
-  const LocalCloud source = localise(a), target = localise(b);
-  const Pose pose = test::random_pose(random, 2, 3);
-  const Pose local = local_pose(pose, source, target);
-  EXPECT_LT((global_pose(local, source, target).matrix() - pose.matrix()).norm(), 1e-14);
-  // The same point either way.
-  EXPECT_LT((local * source.points[7] + target.origin - pose * a.points[7]).norm(), 1e-14);
+struct Problem {
+  Problem(const PointCloud& from, const PointCloud& to, IcpOptions with = {})
+      : source(prepare(from)), target(prepare(to)), options(with), finder(source, target, options) {
+    sample.resize(source.size());
+    std::iota(sample.begin(), sample.end(), 0u);
+  }
+  std::vector<Match> find(const Pose& target_from_source) const {
+    std::vector<Match> matches;
+    finder.find(local_pose(target_from_source, source, target), sample, matches);
+    return matches;
+  }
+  PreparedCloud source, target;
+  IcpOptions options;
+  PairFinder finder;
+  std::vector<std::uint32_t> sample;
+};
+
+Pose shift(double x, double y, double z) {
+  return Pose(Eigen::Translation3d(x, y, z));
 }
 
-TEST(LocalCloud, LeavesOutAndCountsWhatIsNotFinite) {
-  PointCloud cloud = test::bumpy_surface(100, 1);
-  cloud.points[3].y() = std::nan("");
-  cloud.normals[5].x() = INFINITY;
-  const LocalCloud local = localise(cloud);
-  EXPECT_EQ(local.points.size(), 98u);
-  EXPECT_EQ(local.invalid_points, 2u);
+// Two sheets, the source twice as wide: what lies beyond the rim has no partner, however near the
+// sheets are; within it all have. The reach of 16 neighbours is 0.16 m at 200 points per m^2.
+TEST(PairFinder, PointsBeyondTheRimHaveNoPartner) {
+  const PointCloud target = test::plane(20000, 2);
+  PointCloud source = test::plane(20000, 3);
+  for (Vector3d& x : source.points) x.head<2>() *= 2;
+  const Problem problem(source, target);
+  const std::vector<Match> matches = problem.find(shift(0, 0, 0.02));
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const Vector3d at = problem.source.points[i] + problem.source.origin;
+    const double out = at.head<2>().cwiseAbs().maxCoeff();
+    if (out > 5.3) {
+      EXPECT_EQ(matches[i].residual_m, unlimited_m) << at.transpose();
+    } else if (out < 4.7) {
+      EXPECT_NEAR(matches[i].residual_m, 0.02, 1e-12) << at.transpose();
+    }
+  }
 }
 
-// Half of the source has no counterpart; its one-sided pairs must not widen the gate.
-TEST(PairFinder, GateComesFromPairsThatAreMutual) {
-  PointCloud target = test::plane(20000, 2);
-  PointCloud source = transformed(make_pose(Eigen::Matrix3d::Identity(), Vector3d(5, 0, 0.02)),
-                                  test::plane(20000, 3));
-  const LocalCloud s = localise(source), t = localise(target);
-  const PairFinder finder(s, t, {});
-  const Pose pose = local_pose(Pose::Identity(), s, t);
-  const std::vector<Match> matches = finder.find(pose, unlimited_m);
-  const Gates gates = finder.tightened({}, pose, matches);
-  // The sheets are 0.02 m apart at a spacing of 0.5 / sqrt(200 per m^2) = 0.035 m; one-sided pairs
-  // are up to 5 m long.
-  EXPECT_GT(gates.distance_m, 0.06);
-  EXPECT_LT(gates.distance_m, 0.2);
-}
-
-TEST(PairFinder, TrimmingLeavesOutTheWorstShare) {
-  const PointCloud cloud = test::bumpy_surface(1000, 4);
-  PointCloud noisy = cloud;
-  test::add_noise(noisy, 0.01, 5);
-  const LocalCloud s = localise(noisy), t = localise(cloud);
-  const PairFinder finder(s, t, {.max_pair_distance_m = 1, .trim_fraction = 0.25});
-  const Pose pose = local_pose(Pose::Identity(), s, t);
-  const std::vector<Match> matches = finder.find(pose, 1);
-  const Gates gates = finder.tightened({}, pose, matches);
-  EXPECT_EQ(finder.kept(matches, gates).size(), 750u);
+TEST(PairFinder, GuessesChangeNothing) {
+  const auto [source, target] = test::split(test::bumpy_surface(4000, 4), 5);
+  const Problem problem(source, target);
+  std::vector<Match> warm = problem.find(shift(0.1, 0, 0));
+  const Pose pose = local_pose(shift(0.01, 0.02, 0), problem.source, problem.target);
+  problem.finder.find(pose, problem.sample, warm);
+  const std::vector<Match> cold = problem.find(shift(0.01, 0.02, 0));
+  for (std::size_t i = 0; i < cold.size(); ++i) {
+    EXPECT_EQ(warm[i].target, cold[i].target);
+    EXPECT_EQ(warm[i].residual_m, cold[i].residual_m);
+  }
 }
 
 TEST(PairFinder, NormalsThatDisagreeDoNotPair) {
   const PointCloud cloud = test::plane(500, 6);
   PointCloud flipped = cloud;
   for (Vector3d& n : flipped.normals) n = -n;
-  const LocalCloud s = localise(flipped), t = localise(cloud);
-  const PairFinder finder(s, t, {});
-  for (const Match& match : finder.find(local_pose(Pose::Identity(), s, t), unlimited_m))
-    EXPECT_EQ(match.target, no_partner);
+  for (const Match& match : Problem(flipped, cloud).find(Pose::Identity()))
+    EXPECT_EQ(match.residual_m, unlimited_m);
+  // Without signs to go by they do.
+  flipped.normals.clear();
+  for (const Match& match : Problem(flipped, cloud).find(Pose::Identity()))
+    EXPECT_LT(match.residual_m, 1e-14);
+}
+
+TEST(PairFinder, DistanceIsLimitedWhereTheOptionsSay) {
+  const PointCloud cloud = test::plane(500, 6);
+  const Problem problem(cloud, cloud, {.max_pair_distance_m = 0.1});
+  for (const Match& match : problem.find(shift(0, 0, 0.11)))
+    EXPECT_EQ(match.residual_m, unlimited_m);
+  for (const Match& match : problem.find(shift(0, 0, 0.09)))
+    EXPECT_NEAR(match.residual_m, 0.09, 1e-12);
+}
+
+TEST(PairFinder, ObjectiveIsTheMeanLossAndNoPairCostsMost) {
+  const PointCloud cloud = test::plane(500, 6);
+  const Problem problem(cloud, cloud);
+  const Weighing weighing{.loss = {.scale_m = 0.5}, .limit_m = 2};
+  std::vector<Match> matches(4);
+  matches[0].residual_m = 0;
+  matches[1].residual_m = 0.5;
+  matches[2].residual_m = 3;  // counts as 2
+  const double expected_m2 = (0.25 * (1 - std::exp(-0.5)) + 2 * 0.25 * (1 - std::exp(-8.0))) / 4;
+  EXPECT_NEAR(problem.finder.objective_m2(matches, weighing), expected_m2, 1e-15);
+  EXPECT_EQ(problem.finder.kept(std::vector<std::uint32_t>{0, 1, 2, 3}, matches, weighing).size(),
+            2u);
+}
+
+// Parallel planes of equal noise: the distance across, and next to nothing along.
+TEST(PairFinder, MetricOfPlaneToPlaneMeasuresAcrossThePlanes) {
+  const PointCloud cloud = test::plane(2000, 7);
+  const Problem problem(cloud, cloud, {.method = IcpMethod::plane_to_plane});
+  const Eigen::Matrix3d metric = problem.finder.metric(Pose::Identity(), {5, 5});
+  EXPECT_NEAR(metric(2, 2), 1, 1e-9);
+  EXPECT_NEAR(metric(0, 0), 1e-3, 1e-5);  // the square of the usual thickness
+  EXPECT_NEAR(metric(0, 1), 0, 1e-12);
+}
+
+// Sigma of 3 cm across the source and 4 cm across the target: 5 cm together, and the scale of the
+// usual noise is the larger of the two, twice: r^2 = 2 * 16 / 25 d^2.
+TEST(PairFinder, MetricOfPlaneToPlaneFollowsTheScansNoise) {
+  PointCloud source = test::plane(2000, 8), target = source;
+  source.covariances.assign(2000, Vector3d(0, 0, 9e-4).asDiagonal());
+  target.covariances.assign(2000, Vector3d(0, 0, 16e-4).asDiagonal());
+  const Problem problem(source, target, {.method = IcpMethod::plane_to_plane});
+  EXPECT_NEAR(problem.finder.metric(Pose::Identity(), {5, 5})(2, 2), 32.0 / 25, 1e-2);
 }
 
 }  // namespace

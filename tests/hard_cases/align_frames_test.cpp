@@ -3,7 +3,7 @@
 // Alignment must not depend on the unit, the frame, or the distance from the origin.
 #include <gtest/gtest.h>
 
-#include "libscan/align/icp.h"
+#include "tests/align/icp_methods.h"
 #include "tests/align/test_shapes.h"
 
 namespace scan {
@@ -31,12 +31,8 @@ class HardFrame : public testing::TestWithParam<IcpMethod> {
   Pose guess;
   IcpResult reference;
 };
-INSTANTIATE_TEST_SUITE_P(BothMethods, HardFrame,
-                         testing::Values(IcpMethod::point_to_point, IcpMethod::point_to_plane),
-                         [](const auto& method) {
-                           return method.param == IcpMethod::point_to_point ? "PointToPoint"
-                                                                            : "PointToPlane";
-                         });
+INSTANTIATE_TEST_SUITE_P(EveryMethod, HardFrame, testing::ValuesIn(test::icp_methods),
+                         test::method_name);
 
 // H8: UTM, earth-centred, and farther. Coordinates there are rounded by 2^-53 of their size, so is
 // the pose, relative to an extent of 2 m; 4 such roundings meet.

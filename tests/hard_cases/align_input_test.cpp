@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// Broken, missing, repeated and meagre input to alignment, by both methods.
+// Broken, missing, repeated and meagre input to alignment, by every method.
 #include <gtest/gtest.h>
 
-#include "libscan/align/icp.h"
 #include "libscan/core/parallel.h"
+#include "tests/align/icp_methods.h"
 #include "tests/align/test_shapes.h"
 
 namespace scan {
@@ -16,12 +16,8 @@ class HardInput : public testing::TestWithParam<IcpMethod> {
  protected:
   IcpOptions options() const { return {.method = GetParam()}; }
 };
-INSTANTIATE_TEST_SUITE_P(BothMethods, HardInput,
-                         testing::Values(IcpMethod::point_to_point, IcpMethod::point_to_plane),
-                         [](const auto& method) {
-                           return method.param == IcpMethod::point_to_point ? "PointToPoint"
-                                                                            : "PointToPlane";
-                         });
+INSTANTIATE_TEST_SUITE_P(EveryMethod, HardInput, testing::ValuesIn(test::icp_methods),
+                         test::method_name);
 
 struct Problem {
   PointCloud source, target;

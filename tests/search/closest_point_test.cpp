@@ -8,8 +8,8 @@
 #include <array>
 #include <limits>
 
-#include "tests/search/clouds.h"
 #include "libscan/core/error.h"
+#include "tests/search/clouds.h"
 
 namespace scan {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
-#include "tests/search/clouds.h"
 #include "libscan/core/parallel.h"
+#include "tests/search/clouds.h"
 
 namespace scan {
 namespace {
@@ -151,6 +151,25 @@ TEST_P(EachMethod, FindsAllWithinARadiusAndOnIt) {
       EXPECT_EQ(found, within_of(all, radius >= 0 ? radius : std::nan(""))) << "radius " << radius;
     }
   });
+}
+
+TEST_P(EachMethod, FindsNothingForAQueryThatIsNotFinite) {
+  const AnySearch any = make_search(GetParam(), uniform_cloud(100));
+  for (const double bad : {std::nan(""), unlimited_m, -unlimited_m})
+    for (int axis = 0; axis < 3; ++axis) {
+      Eigen::Vector3d query(0.1, 0.2, 0.3);
+      query[axis] = bad;
+      std::visit(
+          [&](const auto& search) {
+            Answer found = {{7, 7}};
+            EXPECT_FALSE(search.nearest(query));
+            search.k_nearest(query, 3, found);
+            EXPECT_TRUE(found.empty());
+            search.within(query, unlimited_m, found);
+            EXPECT_TRUE(found.empty());
+          },
+          any);
+    }
 }
 
 TEST_P(EachMethod, ResolvesPointsThatAreOneInFloat) {

@@ -7,8 +7,8 @@
 #include <map>
 #include <numeric>
 
-#include "tests/search/clouds.h"
 #include "libscan/core/error.h"
+#include "tests/search/clouds.h"
 
 namespace scan {
 namespace {

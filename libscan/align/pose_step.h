@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// One step of an alignment over fixed pairs, and what they fix of the pose. Twists are about the
+// centre of a frame, translations in units of its size.
+#pragma once
+
+#include <span>
+
+#include "libscan/align/observability.h"
+#include "libscan/align/pairs.h"
+
+namespace scan {
+
+// Centre and size of the pairs, in the target's local frame.
+DataFrame frame_of(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples);
+
+// Root mean square of the residuals, as the loss weighs them, metres.
+double rms_m(std::span<const Couple> couples, const WelschLoss& loss);
+
+// The twist that lowers the weighted squares of the residuals most, with no part along `withheld`:
+// by Gauss and Newton, of point-to-point the exact minimum over all rotations.
+Vector6 step(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples,
+             const WelschLoss& loss, const DataFrame& frame, const TwistBasis& withheld);
+
+// The pose moved by a twist.
+Pose moved(const Pose& pose, Vector6 twist, const DataFrame& frame);
+
+// What the planes at the pairs fix. The errors of their normals are drawn from the local fits, or,
+// of scans that lie on each other, from the difference of both scans' normals: that holds the noise
+// which neighbours share, too.
+enum class NormalErrors { of_fits, between_scans };
+MotionInformation motion_information(const PairFinder& finder, const Pose& pose,
+                                     std::span<const Couple> couples, const DataFrame& frame,
+                                     NormalErrors errors);
+
+// Inverse covariance of the pose that solves the pairs' equations, as a twist about the frame's
+// centre in (rad, m), zero along `weak`: B^-1 M B^-1 with the mean curvature B and the scatter M of
+// the pairs' gradients (Huber 1967). Gradients are summed over patches of the surface first, whose
+// sums are nearly independent, so that noise shared by neighbours, points that several pairs have
+// in common and errors of the normals all count (Liang and Zeger 1986). B is taken between the
+// normals of both scans, whose noise is independent and so adds nothing to it.
+Matrix6 pose_information(const PairFinder& finder, const Pose& pose,
+                         std::span<const Couple> couples, const WelschLoss& loss,
+                         const DataFrame& frame, const TwistBasis& weak);
+
+}  // namespace scan
