@@ -20,10 +20,10 @@ constexpr std::size_t least_pairs = 6;
 // noise.
 constexpr double widest_scale = 3, narrowest_scale = 1.5, narrowing = 0.8;
 // While the scale narrows, so many points of the source at least are asked, one in four.
-constexpr std::size_t least_sample = 2000;
+constexpr std::size_t least_sample = 1000;
 constexpr std::size_t coarse_stride = 4;
-// A step below a tenth of its own standard error changes nothing that can be known.
-constexpr double negligible_share_of_sigma = 0.1;
+// A step below three tenths of its standard error adds less than a tenth to the error's square.
+constexpr double negligible_share_of_sigma = 0.3;
 
 void check_guess(const Pose& guess) {
   if (!guess.matrix().allFinite())
@@ -57,16 +57,16 @@ class Iteration {
   };
 
   void sample_every(std::size_t stride);
-  void narrow();
-  bool is_narrow() const { return scale_in_medians_ <= narrowest_scale && settled_; }
-  void widen_for_weak();
+  State narrow();
   State examine(const Weighing& weighing) const;
-  Vector6 accept_lower(const State& state, Vector6 twist);
+  State widened_for_weak(State state);
+  Vector6 accept_lower(const State& state, Step step);
   bool small(const Vector6& twist, const DataFrame& frame) const;
-  bool negligible(const Vector6& twist, const State& state) const;
   bool iterate(IcpResult& result);
-  void report(const State& state, IcpResult& result) const;
+  bool descend(const Pose& guess, IcpResult& result);
+  bool withhold_more(const State& state);
   Stop judge(const State& state) const;
+  void report(const State& state, IcpResult& result) const;
 
   const PreparedCloud& source_;
   const PreparedCloud& target_;
@@ -78,7 +78,9 @@ class Iteration {
   std::vector<Match> matches_;
   Weighing weighing_;
   double scale_in_medians_ = widest_scale;
-  bool settled_ = false;  // the scale follows the residuals no further
+  bool settled_ = false;       // the scale follows the residuals no further
+  TwistBasis withheld_{6, 0};  // at least, about withheld_frame_
+  DataFrame withheld_frame_;
 };
 
 void Iteration::sample_every(std::size_t stride) {
@@ -89,7 +91,7 @@ void Iteration::sample_every(std::size_t stride) {
 }
 
 // The scale that fits the residuals, never wider than before.
-void Iteration::narrow() {
+Iteration::State Iteration::narrow() {
   const double before_m = weighing_.loss.scale_m;
   const double least_m = 1e-15 * target_.radius_m + 1e-150;
   weighing_.loss.scale_m =
@@ -101,24 +103,25 @@ void Iteration::narrow() {
     weighing_.limit_m =
         std::min(weighing_.limit_m, quantile(std::move(residuals_m), 1 - options_.trim_fraction));
   }
-  widen_for_weak();
+  State state = widened_for_weak(examine(weighing_));
   settled_ = weighing_.loss.scale_m >= 0.99 * before_m;
-  if (settled_) weighing_.loss.scale_m = before_m;
+  if (!settled_ || weighing_.loss.scale_m == before_m) return state;
+  weighing_.loss.scale_m = before_m;
+  return examine(weighing_);
 }
 
 // The few points that alone fix a motion have the worst residuals until it is found: where the loss
 // would leave more motions weak than there are, it waits.
-void Iteration::widen_for_weak() {
-  const auto weak_at = [&](const Weighing& weighing) { return examine(weighing).weak.cols(); };
-  Eigen::Index weak = weak_at(weighing_);
-  if (weak == 0) return;
-  const Eigen::Index least = weak_at({.loss = {.scale_m = unlimited_m}});
-  if (weak <= least) return;
+Iteration::State Iteration::widened_for_weak(State state) {
+  if (state.weak.cols() <= withheld_.cols()) return state;
+  const Eigen::Index least = examine({.loss = {.scale_m = unlimited_m}}).weak.cols();
+  if (state.weak.cols() <= least) return state;
   weighing_.limit_m = unlimited_m;
-  while (weak > least) {
+  while (state.weak.cols() > least) {
     weighing_.loss.scale_m *= 2;
-    weak = weak_at(weighing_);
+    state = examine(weighing_);
   }
+  return state;
 }
 
 Iteration::State Iteration::examine(const Weighing& weighing) const {
@@ -128,6 +131,8 @@ Iteration::State Iteration::examine(const Weighing& weighing) const {
   state.frame = frame_of(finder_, pose_, state.couples);
   state.weak = weak_motions(
       motion_information(finder_, pose_, state.couples, state.frame, NormalErrors::of_fits));
+  if (state.weak.cols() < withheld_.cols())
+    state.weak = carried(withheld_, withheld_frame_, state.frame);
   return state;
 }
 
@@ -137,60 +142,72 @@ bool Iteration::small(const Vector6& twist, const DataFrame& frame) const {
              options_.stop_translation_fraction * 2 * source_.radius_m;
 }
 
-// Independent residuals would fix the pose no better than to this; most are not.
-bool Iteration::negligible(const Vector6& twist, const State& state) const {
-  const double sigma_m = rms_m(state.couples, weighing_.loss);
-  double moved2_m2 = 0;  // sum over the pairs of the squared change of the residual
-  for (const Couple& couple : state.couples) {
-    const PointPair pair = finder_.pair(pose_, couple);
-    const Eigen::Vector3d change_m = twist.head<3>().cross(pair.moved - state.frame.centre) +
-                                     state.frame.size_m * twist.tail<3>();
-    const double along_m = pair.normal.isZero(0) ? change_m.norm() : pair.normal.dot(change_m);
-    moved2_m2 += along_m * along_m;
-  }
-  const double limit_m = negligible_share_of_sigma * sigma_m;
-  return moved2_m2 <= limit_m * limit_m;
-}
-
-// Moves by the twist, or by the first of its quarters that does not raise the objective (partners
+// Moves by the step, or by the first of its quarters that does not raise the objective (partners
 // found anew); by nothing when even a negligible part would. Returns what was moved.
-Vector6 Iteration::accept_lower(const State& state, Vector6 twist) {
+Vector6 Iteration::accept_lower(const State& state, Step step) {
   const double before_m2 = finder_.objective_m2(matches_, weighing_);
+  const double negligible_m = negligible_share_of_sigma * rms_m(state.couples, weighing_.loss);
   while (true) {
-    const Pose there = moved(pose_, twist, state.frame);
+    const Pose there = moved(pose_, step.twist, state.frame);
     std::vector<Match> matches = matches_;
     finder_.find(there, sample_, matches);
     if (finder_.objective_m2(matches, weighing_) <= before_m2) {
       pose_ = there;
       matches_ = std::move(matches);
-      return twist;
+      return step.twist;
     }
-    if (small(twist, state.frame) || negligible(twist, state)) return Vector6::Zero();
-    twist /= 4;
+    if (small(step.twist, state.frame) || step.change_m <= negligible_m) return Vector6::Zero();
+    step.twist /= 4;
+    step.change_m /= 4;
   }
 }
 
 // One step. Returns whether another one may follow.
 bool Iteration::iterate(IcpResult& result) {
-  narrow();
-  if (scale_in_medians_ <= narrowest_scale && stride_ > 1) {
-    sample_every(1);
-    narrow();
-  }
-  const State state = examine(weighing_);
+  if (scale_in_medians_ <= narrowest_scale && stride_ > 1) sample_every(1);
+  const State state = narrow();
   if (state.couples.size() < least_pairs) return false;
-  result.history.push_back({weighing_.loss.scale_m, finder_.objective_m2(matches_, weighing_),
-                            rms_m(state.couples, weighing_.loss)});
-  const Vector6 twist = accept_lower(
-      state, step(finder_, pose_, state.couples, weighing_.loss, state.frame, state.weak));
+  const double sigma_m = rms_m(state.couples, weighing_.loss);
+  result.history.push_back(
+      {weighing_.loss.scale_m, finder_.objective_m2(matches_, weighing_), sigma_m});
+  const Step step =
+      best_step(finder_, pose_, state.couples, weighing_.loss, state.frame, state.weak);
+  const Vector6 twist = accept_lower(state, step);
   ++result.iterations;
   if (options_.on_iteration)
     options_.on_iteration(result.iterations, global_pose(pose_, source_, target_));
   // Point-to-point creeps: its steps say little of how far it has to go.
   const bool creeps = options_.method == IcpMethod::point_to_point;
-  const bool still = small(twist, state.frame) || (!creeps && negligible(twist, state));
-  if (is_narrow() && still) return false;
+  const bool still = small(twist, state.frame) ||
+                     (!creeps && step.change_m <= negligible_share_of_sigma * sigma_m);
+  if (scale_in_medians_ <= narrowest_scale && settled_ && still) return false;
   scale_in_medians_ = std::max(narrowest_scale, narrowing * scale_in_medians_);
+  return true;
+}
+
+// From the guess to rest, or to the limit of iterations. Returns whether it was still moving.
+bool Iteration::descend(const Pose& guess, IcpResult& result) {
+  pose_ = local_pose(guess, source_, target_);
+  weighing_ = {.loss = {.scale_m = unlimited_m}};
+  scale_in_medians_ = widest_scale;
+  // Point-to-point is held by the points themselves: fewer would hold it elsewhere.
+  const bool coarse = options_.method != IcpMethod::point_to_point &&
+                      source_.size() / coarse_stride >= least_sample;
+  sample_every(coarse ? coarse_stride : 1);
+  bool moving = true;
+  while (moving && result.iterations < options_.max_iterations) moving = iterate(result);
+  if (stride_ > 1) sample_every(1);
+  return moving;
+}
+
+// Where the scans lie on each other their normals differ by the noise of both, also by what
+// neighbours share and no fit can see. Returns whether that hides more than was withheld.
+bool Iteration::withhold_more(const State& state) {
+  const TwistBasis weak = weak_motions(
+      motion_information(finder_, pose_, state.couples, state.frame, NormalErrors::between_scans));
+  if (weak.cols() <= state.weak.cols()) return false;
+  withheld_ = weak;
+  withheld_frame_ = state.frame;
   return true;
 }
 
@@ -218,16 +235,14 @@ void Iteration::report(const State& state, IcpResult& result) const {
 }
 
 void Iteration::run(const Pose& guess, IcpResult& result) {
-  pose_ = local_pose(guess, source_, target_);
-  weighing_.loss.scale_m = unlimited_m;
-  // Point-to-point is held by the points themselves: fewer would hold it elsewhere.
-  const bool coarse = options_.method != IcpMethod::point_to_point &&
-                      source_.size() / coarse_stride >= least_sample;
-  sample_every(coarse ? coarse_stride : 1);
-  bool moving = true;
-  while (moving && result.iterations < options_.max_iterations) moving = iterate(result);
-  if (stride_ > 1) sample_every(1);
-  const State state = examine(weighing_);
+  bool moving = descend(guess, result);
+  State state = examine(weighing_);
+  // What was moved along them meant nothing: once more from the guess without.
+  if (state.couples.size() >= least_pairs && !moving && withhold_more(state)) {
+    result.history.clear();
+    moving = descend(guess, result);
+    state = examine(weighing_);
+  }
   if (state.couples.size() < least_pairs) {
     result.stop = Stop::no_correspondences;
     return;

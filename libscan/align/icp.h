@@ -77,7 +77,7 @@ struct IcpResult {
   Matrix6 information = Matrix6::Zero();
   // "slide along ...", "turn about ..." in the target frame.
   std::vector<std::string> weak_directions;
-  std::vector<IcpState> history;
+  std::vector<IcpState> history;   // of the last descent from the guess
   std::size_t invalid_points = 0;  // not finite, left out, both clouds together
   double guess_off_rotation = 0;  // Frobenius distance of the guess's matrix from the rotation used
   Cost cost;

@@ -20,7 +20,7 @@ constexpr std::size_t least_points_of_fit = 6;
 // variance across it is below a third of that along its narrower direction.
 constexpr double line_variance_ratio = 0.04;
 constexpr double plane_variance_ratio = 1.0 / 3;
-constexpr std::size_t widest = 16;
+constexpr std::size_t widest = 4;
 constexpr std::size_t most_spacings = 2048;
 
 // Central second moments of the neighbours, and those of every other one less those of the rest.

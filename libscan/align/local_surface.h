@@ -26,7 +26,7 @@ struct LocalFit {
 };
 
 // One per point. Fits over each point and the nearest to it, `neighbours` together (at least 6);
-// where these fix no shape, repeated points being one, or lie on a line, over four and sixteen
+// where these fix no shape, repeated points being one, or lie on a line, over four
 // times as many. `search` is over `points`, which are finite.
 std::vector<LocalFit> local_fits(std::span<const Eigen::Vector3d> points, const AnySearch& search,
                                  std::size_t neighbours);

@@ -62,6 +62,13 @@ MotionInformation gather(std::span<const std::uint32_t> used,
   return sum;
 }
 
+TwistBasis orthonormal(TwistBasis motions) {
+  if (motions.cols() == 0) return motions;
+  for (Eigen::Index i = 0; i < motions.cols(); ++i) motions.col(i).normalize();
+  const Eigen::HouseholderQR<TwistBasis> qr(motions);
+  return qr.householderQ() * TwistBasis::Identity(6, motions.cols());
+}
+
 std::string text_of(const Eigen::Vector3d& v, double smallest) {
   const Eigen::Vector3d w = (v.array().abs() < smallest).select(0, v);
   char text[96];
@@ -125,10 +132,7 @@ TwistBasis weak_motions(const MotionInformation& information) {
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(0.5 * (whitened + whitened.transpose()));
   const Eigen::Index count = (solver.eigenvalues().array() < 1).count();
   if (count == 0) return TwistBasis(6, 0);
-  TwistBasis weak = factor.matrixU().solve(solver.eigenvectors().leftCols(count));
-  for (Eigen::Index i = 0; i < count; ++i) weak.col(i).normalize();
-  const Eigen::HouseholderQR<TwistBasis> qr(weak);
-  return qr.householderQ() * TwistBasis::Identity(6, count);
+  return orthonormal(factor.matrixU().solve(solver.eigenvectors().leftCols(count)));
 }
 
 TwistBasis weak_motions(std::span<const std::uint32_t> used,
@@ -139,6 +143,18 @@ TwistBasis weak_motions(std::span<const std::uint32_t> used,
   std::vector<std::uint32_t> sample;
   for (std::size_t i = 0; i < used.size(); i += stride) sample.push_back(used[i]);
   return weak_motions(gather(sample, points, normals, fits, frame));
+}
+
+// The velocity at the other centre: t + w x (c' - c).
+TwistBasis carried(const TwistBasis& motions, const DataFrame& from, const DataFrame& to) {
+  TwistBasis there = motions;
+  for (Eigen::Index i = 0; i < motions.cols(); ++i) {
+    const Eigen::Vector3d w = motions.col(i).head<3>();
+    const Eigen::Vector3d t_m =
+        from.size_m * motions.col(i).tail<3>() + w.cross(to.centre - from.centre);
+    there.col(i).tail<3>() = t_m / to.size_m;
+  }
+  return orthonormal(there);
 }
 
 std::vector<std::string> name_motions(const TwistBasis& motions, const DataFrame& frame,

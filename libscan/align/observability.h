@@ -59,6 +59,9 @@ TwistBasis weak_motions(std::span<const std::uint32_t> used,
                         std::span<const Eigen::Vector3d> normals, std::span<const LocalFit> fits,
                         const DataFrame& frame);
 
+// The same motions about another frame, orthonormal there.
+TwistBasis carried(const TwistBasis& motions, const DataFrame& from, const DataFrame& to);
+
 // Names of weak motions: "slide along (x, y, z)", "turn about (x, y, z) through (x, y, z) m", or
 // "screw about ... by ... m per turn". `origin` is added to every position.
 std::vector<std::string> name_motions(const TwistBasis& motions, const DataFrame& frame,

@@ -147,7 +147,7 @@ std::vector<Couple> PairFinder::kept(std::span<const std::uint32_t> sample,
   std::vector<Couple> couples;
   couples.reserve(matches.size());
   for (std::size_t k = 0; k < matches.size(); ++k)
-    if (matches[k].residual_m <= most_m)
+    if (matches[k].residual_m <= most_m && matches[k].residual_m < unlimited_m)
       couples.push_back({sample[k], matches[k].target, matches[k].residual_m});
   return couples;
 }

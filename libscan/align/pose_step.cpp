@@ -64,8 +64,8 @@ NormalEquations normal_equations(const PairFinder& finder, const Pose& pose,
                      });
 }
 
-Vector6 rigid_step(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples,
-                   const WelschLoss& loss, const DataFrame& frame, const TwistBasis& withheld) {
+Step rigid_step(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples,
+                const WelschLoss& loss, const DataFrame& frame, const TwistBasis& withheld) {
   std::vector<Eigen::Vector3d> moved, partners;
   std::vector<double> weights;
   for (const Couple& couple : couples) {
@@ -74,9 +74,13 @@ Vector6 rigid_step(const PairFinder& finder, const Pose& pose, std::span<const C
     partners.push_back(pair.target - frame.centre);
     weights.push_back(loss.weight(couple.residual_m));
   }
-  Vector6 twist = log(rigid_fit(moved, partners, weights).target_from_source);
+  const Pose best = rigid_fit(moved, partners, weights).target_from_source;
+  double squares_m2 = 0;
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    squares_m2 += weights[i] * (best * moved[i] - moved[i]).squaredNorm();
+  Vector6 twist = log(best);
   twist.tail<3>() /= frame.size_m;
-  return complement_projector(withheld) * twist;
+  return {complement_projector(withheld) * twist, std::sqrt(squares_m2)};
 }
 
 }  // namespace
@@ -118,12 +122,13 @@ double rms_m(std::span<const Couple> couples, const WelschLoss& loss) {
   return weights > 0 ? std::sqrt(squares_m2 / weights) : 0;
 }
 
-Vector6 step(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples,
-             const WelschLoss& loss, const DataFrame& frame, const TwistBasis& withheld) {
+Step best_step(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples,
+               const WelschLoss& loss, const DataFrame& frame, const TwistBasis& withheld) {
   if (finder.method() == IcpMethod::point_to_point)
     return rigid_step(finder, pose, couples, loss, frame, withheld);
   const NormalEquations sums = normal_equations(finder, pose, couples, loss, frame);
-  return solve_withholding(sums.a, sums.b, withheld);
+  const Vector6 twist = solve_withholding(sums.a, sums.b, withheld);
+  return {twist, frame.size_m * std::sqrt(std::max(0.0, twist.dot(sums.a * twist)))};
 }
 
 Pose moved(const Pose& pose, Vector6 twist, const DataFrame& frame) {

@@ -17,10 +17,15 @@ DataFrame frame_of(const PairFinder& finder, const Pose& pose, std::span<const C
 // Root mean square of the residuals, as the loss weighs them, metres.
 double rms_m(std::span<const Couple> couples, const WelschLoss& loss);
 
-// The twist that lowers the weighted squares of the residuals most, with no part along `withheld`:
+struct Step {
+  Vector6 twist = Vector6::Zero();
+  double change_m = 0;  // root of the weighted sum of squared changes of the residuals
+};
+
+// The step that lowers the weighted squares of the residuals most, with no part along `withheld`:
 // by Gauss and Newton, of point-to-point the exact minimum over all rotations.
-Vector6 step(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples,
-             const WelschLoss& loss, const DataFrame& frame, const TwistBasis& withheld);
+Step best_step(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples,
+               const WelschLoss& loss, const DataFrame& frame, const TwistBasis& withheld);
 
 // The pose moved by a twist.
 Pose moved(const Pose& pose, Vector6 twist, const DataFrame& frame);

@@ -115,7 +115,7 @@ TEST(Icp, TheObjectiveNeverRises) {
         ++compared;
       }
     }
-    EXPECT_GT(compared, 5u) << name_of(method);
+    EXPECT_GE(compared, 5u) << name_of(method);
   }
 }
 

@@ -35,11 +35,11 @@ TEST(LocalFits, TellLineSurfaceAndVolumeApart) {
   EXPECT_TRUE(fits_of(cube)[0].direction.isZero(0));
 }
 
-// Scan lines far apart: the nearest 16 points lie on one of them, the nearest 256 on several.
+// Scan lines far apart: the nearest 16 points lie on one of them, the nearest 64 on three.
 TEST(LocalFits, SeeTheSurfaceBetweenScanLines) {
   std::vector<Vector3d> lines;
   for (int i = 0; i < 20; ++i)
-    for (int j = 0; j < 200; ++j) lines.emplace_back(0.3 * i, 0.01 * j, 0);
+    for (int j = 0; j < 200; ++j) lines.emplace_back(0.12 * i, 0.01 * j, 0);
   const LocalFit fit = fits_of(lines)[10 * 200 + 100];
   EXPECT_EQ(fit.shape, LocalShape::surface);
   EXPECT_NEAR(std::abs(fit.direction.z()), 1, 1e-12);
