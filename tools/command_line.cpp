@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
+#include "libscan/core/nearest_word.h"
 #include "libscan/core/parallel.h"
 #include "libscan/io/json_reader.h"
 #include "tools/version.h"

@@ -91,13 +91,10 @@ synth::DensityGrid read_density(JsonReader reader, const std::filesystem::path& 
 
 RecipeLight read_light(JsonReader reader, const std::filesystem::path& folder) {
   RecipeLight light;
-  if (reader.has("point")) {
-    light.light = read_point(reader.object("point"));
-  } else if (reader.has("area")) {
-    light.light = read_area(reader.object("area"));
-  } else {
-    light = read_environment(reader.object("environment"), folder);
-  }
+  const std::string kind = reader.one_of({"point", "area", "environment"});
+  if (kind == "point") light.light = read_point(reader.object(kind));
+  if (kind == "area") light.light = read_area(reader.object(kind));
+  if (kind == "environment") light = read_environment(reader.object(kind), folder);
   reader.finish();
   return light;
 }

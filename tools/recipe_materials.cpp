@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
+#include "libscan/core/nearest_word.h"
 #include "libscan/io/image_file.h"
 #include "synth/bsdf/fresnel.h"
 #include "synth/gltf_material.h"
@@ -103,30 +104,30 @@ synth::Texture read_picture(JsonReader reader, const std::filesystem::path& fold
   return texture;
 }
 
-synth::Texture read_texture(JsonReader reader, const std::filesystem::path& folder,
-                            std::filesystem::path& picture) {
-  if (reader.has("picture")) {
-    synth::Texture texture = read_picture(reader.object("picture"), folder, picture);
-    reader.finish();
-    return texture;
-  }
-  if (reader.has("checker")) {
-    JsonReader inner = reader.object("checker");
-    synth::CheckerTexture checker;
-    checker.period_m = inner.length_m("period", checker.period_m);
-    checker.contrast = inner.number("contrast", checker.contrast);
-    inner.finish();
-    reader.finish();
-    return checker;
-  }
-  JsonReader inner = reader.object("noise");
+synth::CheckerTexture read_checker(JsonReader reader) {
+  synth::CheckerTexture checker;
+  checker.period_m = reader.length_m("period", checker.period_m);
+  checker.contrast = reader.number("contrast", checker.contrast);
+  reader.finish();
+  return checker;
+}
+
+synth::NoiseTexture read_noise(JsonReader reader) {
   synth::NoiseTexture noise;
-  noise.period_m = inner.length_m("period", noise.period_m);
-  noise.octaves = static_cast<int>(inner.integer("octaves", noise.octaves));
-  noise.contrast = inner.number("contrast", noise.contrast);
-  inner.finish();
+  noise.period_m = reader.length_m("period", noise.period_m);
+  noise.octaves = static_cast<int>(reader.integer("octaves", noise.octaves));
+  noise.contrast = reader.number("contrast", noise.contrast);
   reader.finish();
   return noise;
+}
+
+synth::Texture read_texture(JsonReader reader, const std::filesystem::path& folder,
+                            std::filesystem::path& picture) {
+  const std::string kind = reader.one_of({"picture", "checker", "noise"});
+  reader.finish();
+  if (kind == "picture") return read_picture(reader.object(kind), folder, picture);
+  if (kind == "checker") return read_checker(reader.object(kind));
+  return read_noise(reader.object(kind));
 }
 
 struct TextureWriter {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
+#include "libscan/core/nearest_word.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/shape_json.h"
 #include "tools/recipe_materials.h"

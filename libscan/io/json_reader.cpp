@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "libscan/core/error.h"
+#include "libscan/core/nearest_word.h"
 #include "libscan/core/units.h"
 
 namespace scan {
@@ -27,25 +28,6 @@ std::string shown(const json& value) {
   return text.size() <= 60 ? text : text.substr(0, 57) + "...";
 }
 
-// Insertions, deletions, substitutions and swaps of neighbours that turn one word into the other
-// (optimal string alignment).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        d[i][j] = i + j;
-        continue;
-      }
-      d[i][j] =
-          std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
-      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
-      if (swapped) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  }
-  return d[a.size()][b.size()];
-}
-
 std::string listed(std::string_view name, const Units& units) {
   std::string text;
   for (const auto& [suffix, scale] : units)
@@ -54,17 +36,6 @@ std::string listed(std::string_view name, const Units& units) {
 }
 
 }  // namespace
-
-std::string nearest_word(std::string_view word, const std::vector<std::string>& words) {
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
-  for (const std::string& candidate : words)
-    if (const std::size_t d = edit_distance(word, candidate); d < best_distance) {
-      best = candidate;
-      best_distance = d;
-    }
-  return best;
-}
 
 JsonReader::JsonReader(const json& object, std::string place)
     : object_(&object), place_(std::move(place)) {
@@ -75,6 +46,37 @@ JsonReader::JsonReader(const json& object, std::string place)
 
 void JsonReader::fail(std::string_view key, const std::string& what) const {
   throw Error(Trouble::input, place_ + "/" + std::string(key) + ": " + what);
+}
+
+// A key that nobody has asked for and that reads nearly like the missing one is what was meant.
+void JsonReader::fail_missing(std::string_view name, const Units& units) const {
+  std::vector<std::string> meant;
+  for (const auto& [suffix, scale] : units) meant.push_back(std::string(name) + suffix);
+  if (meant.empty()) meant.emplace_back(name);
+  const std::string alternatives = units.empty() ? "" : " (one of " + listed(name, units) + ")";
+  std::string hint;
+  for (const std::string& key : keys()) {
+    const std::string near = known_.contains(key) ? "" : nearest_word(key, meant);
+    if (!near.empty()) hint = "did you mean '" + near + "' by '" + key + "'?";
+  }
+  throw Error(Trouble::input, place_ + "/" + std::string(name) + ": is missing" + alternatives,
+              hint);
+}
+
+std::string JsonReader::one_of(const std::vector<std::string>& words) {
+  std::string found, list;
+  for (const std::string& word : words) {
+    list += (list.empty() ? "" : ", ") + word;
+    if (!has(word)) continue;
+    if (!found.empty()) fail(word, "stands beside '" + found + "'; only one of them can be");
+    found = word;
+  }
+  if (!found.empty()) return found;
+  std::string hint;
+  for (const std::string& key : keys())
+    if (const std::string near = nearest_word(key, words); !near.empty())
+      hint = "did you mean '" + near + "' by '" + key + "'?";
+  throw Error(Trouble::input, place_ + ": must have one of " + list, hint);
 }
 
 const json* JsonReader::find(std::string_view key) {
@@ -96,7 +98,7 @@ bool JsonReader::has_quantity(std::string_view name) const {
 
 double JsonReader::number(std::string_view key) {
   const json* found = find(key);
-  if (!found) fail(key, "is missing");
+  if (!found) fail_missing(key, {});
   if (!found->is_number()) fail(key, "must be a number, is " + shown(*found));
   const double number = found->get<double>();
   if (!std::isfinite(number)) fail(key, "must be finite");
@@ -109,7 +111,7 @@ double JsonReader::number(std::string_view key, double otherwise) {
 
 long JsonReader::integer(std::string_view key) {
   const json* found = find(key);
-  if (!found) fail(key, "is missing");
+  if (!found) fail_missing(key, {});
   if (!found->is_number_integer()) fail(key, "must be a whole number, is " + shown(*found));
   if (found->is_number_unsigned() && !std::in_range<long>(found->get<std::uint64_t>()))
     fail(key, "is " + shown(*found) + ", over the range of 64 bits");
@@ -129,7 +131,7 @@ bool JsonReader::boolean(std::string_view key, bool otherwise) {
 
 std::string JsonReader::text(std::string_view key) {
   const json* found = find(key);
-  if (!found) fail(key, "is missing");
+  if (!found) fail_missing(key, {});
   if (!found->is_string()) fail(key, "must be a text, is " + shown(*found));
   return found->get<std::string>();
 }
@@ -140,7 +142,7 @@ std::string JsonReader::text(std::string_view key, const std::string& otherwise)
 
 std::vector<double> JsonReader::numbers(std::string_view key) {
   const json* found = find(key);
-  if (!found) fail(key, "is missing");
+  if (!found) fail_missing(key, {});
   if (!found->is_array()) fail(key, "must be a list of numbers, is " + shown(*found));
   std::vector<double> list;
   for (const json& entry : *found) {
@@ -172,7 +174,7 @@ double JsonReader::quantity(std::string_view name, const Units& units, const dou
   std::string key;
   if (find_quantity(name, units, scale, key)) return scale * number(key);
   if (otherwise) return *otherwise;
-  fail(name, "is missing (one of " + listed(name, units) + ")");
+  fail_missing(name, units);
 }
 
 double JsonReader::length_m(std::string_view name) {
@@ -200,8 +202,7 @@ double JsonReader::frequency_hz(std::string_view name) {
 std::vector<double> JsonReader::lengths_m(std::string_view name) {
   double scale = 1;
   std::string key;
-  if (!find_quantity(name, length_units, scale, key))
-    fail(name, "is missing (one of " + listed(name, length_units) + ")");
+  if (!find_quantity(name, length_units, scale, key)) fail_missing(name, length_units);
   auto list = numbers(key);
   for (double& entry : list) entry *= scale;
   return list;
@@ -210,8 +211,7 @@ std::vector<double> JsonReader::lengths_m(std::string_view name) {
 std::vector<double> JsonReader::frequencies_hz(std::string_view name) {
   double scale = 1;
   std::string key;
-  if (!find_quantity(name, frequency_units, scale, key))
-    fail(name, "is missing (one of " + listed(name, frequency_units) + ")");
+  if (!find_quantity(name, frequency_units, scale, key)) fail_missing(name, frequency_units);
   auto list = numbers(key);
   for (double& entry : list) entry *= scale;
   return list;
@@ -231,13 +231,13 @@ Eigen::Vector3d JsonReader::vector_m(std::string_view name, const Eigen::Vector3
 
 JsonReader JsonReader::object(std::string_view key) {
   const json* found = find(key);
-  if (!found) fail(key, "is missing");
+  if (!found) fail_missing(key, {});
   return JsonReader(*found, place_ + "/" + std::string(key));
 }
 
 std::vector<JsonReader> JsonReader::objects(std::string_view key) {
   const json* found = find(key);
-  if (!found) fail(key, "is missing");
+  if (!found) fail_missing(key, {});
   if (!found->is_array()) fail(key, "must be a list of objects");
   std::vector<JsonReader> list;
   for (std::size_t i = 0; i < found->size(); ++i)
@@ -247,7 +247,7 @@ std::vector<JsonReader> JsonReader::objects(std::string_view key) {
 
 const json& JsonReader::value(std::string_view key) {
   const json* found = find(key);
-  if (!found) fail(key, "is missing");
+  if (!found) fail_missing(key, {});
   return *found;
 }
 

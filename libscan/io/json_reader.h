@@ -29,6 +29,9 @@ class JsonReader {
   bool has(std::string_view key);                  // exactly this key, known from now on
   bool has_quantity(std::string_view name) const;  // this name with any unit
 
+  // The one of these keys that is there; scan::Error (input) if none or two of them are.
+  std::string one_of(const std::vector<std::string>& words);
+
   double number(std::string_view key);
   double number(std::string_view key, double otherwise);
   long integer(std::string_view key);
@@ -67,12 +70,12 @@ class JsonReader {
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
  private:
+  using Units = std::map<std::string, double>;  // a key's suffix -> its size in SI
+  [[noreturn]] void fail_missing(std::string_view name, const Units& units) const;
   const nlohmann::json* find(std::string_view key);
-  const nlohmann::json* find_quantity(std::string_view name,
-                                      const std::map<std::string, double>& units, double& scale,
+  const nlohmann::json* find_quantity(std::string_view name, const Units& units, double& scale,
                                       std::string& key);
-  double quantity(std::string_view name, const std::map<std::string, double>& units,
-                  const double* otherwise);
+  double quantity(std::string_view name, const Units& units, const double* otherwise);
 
   const nlohmann::json* object_;
   std::string place_;
@@ -83,9 +86,5 @@ class JsonReader {
 // or more than 256 levels. scan::Error (input) with the line otherwise.
 nlohmann::json read_json(const std::filesystem::path& path);
 nlohmann::json parse_json(std::string_view text, const std::string& name);
-
-// The member of `words` nearest to `word` (edit distance at most a third of its length, at least
-// 1), or empty.
-std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
 
 }  // namespace scan

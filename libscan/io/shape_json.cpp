@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
+#include "libscan/core/nearest_word.h"
 #include "libscan/io/poses.h"
 
 namespace scan {

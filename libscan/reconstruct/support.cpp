@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "libscan/core/parallel.h"
+#include "libscan/search/batch.h"
 #include "libscan/search/kd_tree.h"
 
 namespace scan {
@@ -23,10 +24,11 @@ std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
 
 std::vector<double> distance_to_points(const Mesh& mesh, std::span<const Eigen::Vector3d> points) {
   const KdTree tree(points);
+  std::vector<Neighbour> nearest;
+  nearest_of_each(tree, mesh.vertices, unlimited_m, curve_order(mesh.vertices), nearest);
   std::vector<double> distances(mesh.vertices.size());
-  parallel_for(distances.size(), [&](std::size_t i) {
-    distances[i] = std::sqrt(tree.nearest(mesh.vertices[i])->distance2_m2);
-  });
+  for (std::size_t i = 0; i < distances.size(); ++i)
+    distances[i] = std::sqrt(nearest[i].distance2_m2);
   return distances;
 }
 
@@ -80,12 +82,12 @@ Mesh supported_components(const Mesh& mesh, std::span<const Eigen::Vector3d> poi
   for (std::size_t t = 0; t < component.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t]) of_vertex[v] = component[t];
   const KdTree tree(mesh.vertices);
-  std::vector<std::uint32_t> nearest(points.size());
-  parallel_for(points.size(), [&](std::size_t i) { nearest[i] = tree.nearest(points[i])->index; });
+  std::vector<Neighbour> nearest;
+  nearest_of_each(tree, points, unlimited_m, curve_order(points), nearest);
   std::vector<double> support(count, 0.0);
   double total = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    support[of_vertex[nearest[i]]] += weights[i];
+    support[of_vertex[nearest[i].index]] += weights[i];
     total += weights[i];
   }
   std::vector<char> keep(component.size());

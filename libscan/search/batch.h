@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <numeric>
 
 #include "libscan/core/parallel.h"
 #include "libscan/search/neighbour_search.h"
@@ -51,6 +52,39 @@ std::size_t k_nearest_of_each(const S& search, std::span<const Eigen::Vector3d> 
     }
   });
   return m;
+}
+
+// The neighbours of query i: found[first[i]] up to, not with, found[first[i + 1]].
+struct Neighbourhoods {
+  std::vector<std::size_t> first;
+  std::vector<Neighbour> found;
+};
+
+// All points within the radius (inclusive) of each query, sorted by (distance, index).
+template <NeighbourSearch S>
+Neighbourhoods within_of_each(const S& search, std::span<const Eigen::Vector3d> queries,
+                              double radius_m, std::span<const std::uint32_t> order) {
+  Neighbourhoods all{std::vector<std::size_t>(queries.size() + 1, 0), {}};
+  std::vector<std::vector<Neighbour>> found_by_task(queries.size() / queries_per_task + 1);
+  parallel_chunks(queries.size(), queries_per_task, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbour> mine, &found = found_by_task[begin / queries_per_task];
+    for (const std::uint32_t i : order.subspan(begin, end - begin)) {
+      search.within(queries[i], radius_m, mine);
+      all.first[i + 1] = mine.size();
+      found.insert(found.end(), mine.begin(), mine.end());
+    }
+  });
+  std::partial_sum(all.first.begin(), all.first.end(), all.first.begin());
+  all.found.resize(all.first.back());
+  parallel_chunks(queries.size(), queries_per_task, [&](std::size_t begin, std::size_t end) {
+    const Neighbour* next = found_by_task[begin / queries_per_task].data();
+    for (const std::uint32_t i : order.subspan(begin, end - begin)) {
+      const std::size_t count = all.first[i + 1] - all.first[i];
+      std::copy(next, next + count, all.found.data() + all.first[i]);
+      next += count;
+    }
+  });
+  return all;
 }
 
 }  // namespace scan

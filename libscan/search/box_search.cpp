@@ -3,6 +3,7 @@
 #include "libscan/search/box_search.h"
 
 #include <bit>
+#include <utility>
 
 #include "libscan/search/box_tree.h"
 #include "libscan/search/collect.h"
@@ -14,7 +15,7 @@ namespace {
 // not all of them rival the k-th, none that does was dropped.
 constexpr std::size_t few = 60, spare = 4, insert_width = 8;
 
-TreeQuery raw(const LocalQuery& query, double limit2_m2) {
+TreeQuery tree_query(const LocalQuery& query, double limit2_m2) {
   return {
       {query.at[0], query.at[1], query.at[2]}, query.limit2(limit2_m2), query.widening(), nothing};
 }
@@ -47,14 +48,14 @@ std::optional<Neighbour> nearest_of_rivals(const BoxTree& tree, const LocalQuery
                                            double max_distance_m, std::uint32_t found) {
   NearestCollector collector(max_distance_m);
   if (found != nothing) collector.offer(exact(tree, found, query.at_m));
-  offer_all(tree, query, raw(query, collector.limit2_m2()), collector);
+  offer_all(tree, query, tree_query(query, collector.limit2_m2()), collector);
   return collector.take();
 }
 
-// Offers the k nearest, and perhaps more; false if rounding leaves it open which they are. Then
-// all of them are within the limit, to which `at` is narrowed.
-bool offer_few(const BoxTree& tree, const LocalQuery& query, TreeQuery& at, std::size_t k,
-               NearestKCollector& collector) {
+// Finds the k nearest; false if rounding leaves it open which they are. Then all of them are within
+// the limit, to which `at` is narrowed.
+bool find_few(const BoxTree& tree, const LocalQuery& query, TreeQuery& at, std::size_t k,
+              std::vector<Neighbour>& found) {
   alignas(64) std::uint64_t best[few + spare];
   const std::size_t kept = (k + spare + insert_width - 1) / insert_width * insert_width;
   at.limit2 =
@@ -63,8 +64,17 @@ bool offer_few(const BoxTree& tree, const LocalQuery& query, TreeQuery& at, std:
     return std::bit_cast<float>(static_cast<std::uint32_t>(entry >> 32)) <= at.limit2;
   };
   if (rivals(best[kept - 1])) return false;
-  for (const std::uint64_t* entry = best; rivals(*entry); ++entry)
-    collector.offer(exact(tree, static_cast<std::uint32_t>(*entry), query.at_m));
+  std::size_t count = k;
+  while (rivals(best[count])) ++count;
+  // First all distances, so that the processor waits for all records at once; then the order, which
+  // is nearly that of the floats.
+  found.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    found[i] = exact(tree, static_cast<std::uint32_t>(best[i]), query.at_m);
+  for (std::size_t i = 1; i < count; ++i)
+    for (std::size_t j = i; j > 0 && nearer(found[j], found[j - 1]); --j)
+      std::swap(found[j], found[j - 1]);
+  found.resize(k);
   return true;
 }
 
@@ -85,7 +95,7 @@ std::optional<Neighbour> BoxSearch::nearest(const Eigen::Vector3d& query_m, doub
   const double limit2_m2 = squared_limit_m2(max_distance_m);
   if (tree_->points == 0 || !query_m.allFinite() || limit2_m2 < 0) return std::nullopt;
   const LocalQuery query(tree_->frame, query_m);
-  TreeQuery at = raw(query, limit2_m2);
+  TreeQuery at = tree_query(query, limit2_m2);
   if (guess < tree_->place_of.size() && tree_->place_of[guess] != nothing)
     at.first_leaf = tree_->place_of[guess] / leaf_width;
   const RawNearest found = tree_->kernels->nearest(tree_->view(), at);
@@ -98,11 +108,12 @@ std::optional<Neighbour> BoxSearch::nearest(const Eigen::Vector3d& query_m, doub
 void BoxSearch::k_nearest(const Eigen::Vector3d& query_m, std::size_t k,
                           std::vector<Neighbour>& found) const {
   k = std::min(k, tree_->points);
-  NearestKCollector collector(k, found);
+  found.clear();
   if (k == 0 || !query_m.allFinite()) return;
   const LocalQuery query(tree_->frame, query_m);
-  TreeQuery at = raw(query, unlimited_m);
-  if (k <= few && offer_few(*tree_, query, at, k, collector)) return;
+  TreeQuery at = tree_query(query, unlimited_m);
+  if (k <= few && find_few(*tree_, query, at, k, found)) return;
+  NearestKCollector collector(k, found);
   offer_all(*tree_, query, at, collector);
   collector.finish();
 }
@@ -112,7 +123,7 @@ void BoxSearch::within(const Eigen::Vector3d& query_m, double radius_m,
   WithinCollector collector(radius_m, found);
   if (tree_->points == 0 || !query_m.allFinite() || collector.limit2_m2() < 0) return;
   const LocalQuery query(tree_->frame, query_m);
-  offer_all(*tree_, query, raw(query, collector.limit2_m2()), collector);
+  offer_all(*tree_, query, tree_query(query, collector.limit2_m2()), collector);
   collector.finish();
 }
 

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
+
+#include "libscan/core/error.h"
 
 namespace scan {
 namespace {
 
+constexpr std::size_t most_leaves = (std::size_t{1} << 28) - 1;  // so that a place has 32 bits
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
@@ -21,6 +25,10 @@ TreeBox::TreeBox(std::span<const LocalPoint> points) : low(points[0].at), high(p
 }
 
 void BoxTree::resize(std::size_t leaf_count) {
+  if (leaf_count > most_leaves)
+    throw Error(Trouble::resource, "neighbour search: " + std::to_string(points) + " points in " +
+                                       std::to_string(leaf_count) + " leaves, must be at most " +
+                                       std::to_string(most_leaves));
   leaves.resize(leaf_count);
   records.resize(leaf_count * leaf_width);
 }

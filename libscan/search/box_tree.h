@@ -31,7 +31,7 @@ struct BoxTree {
   const TreeKernels* kernels = nullptr;
 
   TreeView view() const { return {nodes.data(), leaves.data(), root}; }
-  // Makes room for the leaves.
+  // Makes room for the leaves. Throws scan::Error (resource) if there are too many to number.
   void resize(std::size_t leaf_count);
   void fill(std::uint32_t leaf, std::span<const LocalPoint> part,
             std::span<const Eigen::Vector3d> points_m);

@@ -4,9 +4,8 @@
 // double precision. Internal to libscan/search.
 //
 // Each collector has `limit2_m2()`: a point farther than that cannot enter; and `offer(candidate)`:
-// takes or leaves a point. Points may be offered in any order, each at most once. `keeps_one` tells
-// a search that the nearest of several should be offered first. `finish()`, once all are offered,
-// puts the answer in order.
+// takes or leaves a point. Points may be offered in any order. `finish()`, once all are offered,
+// puts the answer in order. The collector of one may be offered a point twice, the others may not.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +22,6 @@ inline double squared_limit_m2(double radius_m) {
 
 class NearestCollector {
  public:
-  static constexpr bool keeps_one = true;
   explicit NearestCollector(double max_distance_m) : limit2_m2_(squared_limit_m2(max_distance_m)) {}
   double limit2_m2() const { return limit2_m2_; }
   void offer(const Neighbour& candidate) {
@@ -41,7 +39,6 @@ class NearestCollector {
 // Keeps the k best in order if they are few, which is quickest, else in a heap, worst on top.
 class NearestKCollector {
  public:
-  static constexpr bool keeps_one = false;
   NearestKCollector(std::size_t k, std::vector<Neighbour>& found) : k_(k), found_(found) {
     found_.clear();
   }
@@ -81,7 +78,6 @@ class NearestKCollector {
 
 class WithinCollector {
  public:
-  static constexpr bool keeps_one = false;
   WithinCollector(double radius_m, std::vector<Neighbour>& found)
       : limit2_m2_(squared_limit_m2(radius_m)), found_(found) {
     found_.clear();

@@ -103,7 +103,7 @@ class Builder {
 
 BoxTree build_kd_tree(std::span<const Eigen::Vector3d> points_m) {
   BoxTree tree = empty_tree(points_m);
-  std::vector<LocalPoint> local = local_points(points_m, tree.frame);
+  LargeArray<LocalPoint> local = local_points(points_m, tree.frame);
   tree.points = local.size();
   if (!local.empty()) Builder(tree, points_m).build(local);
   return tree;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
+#include "libscan/core/parallel.h"
 #include "libscan/core/point_cloud.h"
 
 namespace scan {
@@ -21,13 +23,23 @@ LocalFrame local_frame(std::span<const Eigen::Vector3d> points_m) {
   return frame;
 }
 
-std::vector<LocalPoint> local_points(std::span<const Eigen::Vector3d> points_m,
-                                     const LocalFrame& frame) {
-  std::vector<LocalPoint> local;
-  local.reserve(points_m.size());
-  for (std::size_t i = 0; i < points_m.size(); ++i)
-    if (points_m[i].allFinite())
-      local.push_back({frame.local(points_m[i]), static_cast<std::uint32_t>(i)});
+LargeArray<LocalPoint> local_points(std::span<const Eigen::Vector3d> points_m,
+                                    const LocalFrame& frame) {
+  constexpr std::size_t chunk = 16384;
+  std::vector<std::size_t> first(points_m.size() / chunk + 2, 0);  // finite points before a chunk
+  parallel_chunks(points_m.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    const auto part = points_m.subspan(begin, end - begin);
+    first[begin / chunk + 1] = static_cast<std::size_t>(std::count_if(
+        part.begin(), part.end(), [](const Eigen::Vector3d& point) { return point.allFinite(); }));
+  });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  LargeArray<LocalPoint> local(first.back());
+  parallel_chunks(points_m.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    LocalPoint* next = local.data() + first[begin / chunk];
+    for (std::size_t i = begin; i < end; ++i)
+      if (points_m[i].allFinite())
+        *next++ = {frame.local(points_m[i]), static_cast<std::uint32_t>(i)};
+  });
   return local;
 }
 

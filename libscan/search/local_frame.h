@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "libscan/search/large_array.h"
 #include "libscan/search/neighbour_search.h"
 
 namespace scan {
@@ -42,9 +43,9 @@ struct LocalFrame {
 // The frame of the finite points.
 LocalFrame local_frame(std::span<const Eigen::Vector3d> points_m);
 
-// The finite points in the frame.
-std::vector<LocalPoint> local_points(std::span<const Eigen::Vector3d> points_m,
-                                     const LocalFrame& frame);
+// The finite points in the frame, in their order.
+LargeArray<LocalPoint> local_points(std::span<const Eigen::Vector3d> points_m,
+                                    const LocalFrame& frame);
 
 // A query in the frame.
 //
@@ -57,7 +58,7 @@ std::vector<LocalPoint> local_points(std::span<const Eigen::Vector3d> points_m,
 //
 // Conversely a point with the float value f has d <= sqrt(f) (1 + 2^-22) + slack. So all that may
 // be as near as it have float values of at most (sqrt(f) (1 + 2^-22) + 2 slack)^2 (1 + 2^-20);
-// computed in float, with six more roundings of 2^-24, by tree_walk.h with 2^-19 and 2^-18.
+// computed in float, with six more roundings of 2^-24, by widened() with 2^-19 and 2^-18.
 struct LocalQuery {
   LocalQuery(const LocalFrame& frame, const Eigen::Vector3d& query_m)
       : at_m(query_m),

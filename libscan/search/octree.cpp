@@ -48,8 +48,9 @@ struct Division {
 
   // Divides the cube.
   Division(Points points, const Cube& cube) { divide(points, cube, 0, node_width, 0); }
-  // Divides equal points into runs that fill all leaves but the last.
+  // Divides equal points into runs that fill all leaves but the last; the planes touch all.
   explicit Division(Points points) {
+    std::fill_n(node.plane, node_width - 1, points[0].at[0]);
     std::size_t run = leaf_width;
     while (run * node_width < points.size()) run *= node_width;
     for (; !points.empty(); points = points.subspan(std::min(run, points.size()))) {
@@ -141,7 +142,7 @@ struct Branch {
 
 BoxTree build_octree(std::span<const Eigen::Vector3d> points_m) {
   BoxTree tree = empty_tree(points_m);
-  std::vector<LocalPoint> local = local_points(points_m, tree.frame);
+  LargeArray<LocalPoint> local = local_points(points_m, tree.frame);
   tree.points = local.size();
   if (local.empty()) return tree;
   Branch branch;

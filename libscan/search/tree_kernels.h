@@ -56,6 +56,13 @@ struct RawNearest {
   bool unsure;
 };
 
+// The largest squared float distance of a point that may in truth be as near as one at distance2.
+// Static, so that no file gets a copy that another file's instruction set was used for.
+static inline float widened(float distance2, float widening) {
+  const float distance = __builtin_sqrtf(distance2) * (1 + 0x1p-19f) + widening;
+  return distance * distance * (1 + 0x1p-18f);
+}
+
 // A walk to all leaves with points within a limit that may shrink on the way. A row holds the boxes
 // of a node on the path from the root and which of its children are left.
 struct TreeWalk {

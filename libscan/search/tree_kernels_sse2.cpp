@@ -96,7 +96,7 @@ inline void insert(std::uint64_t entry, std::uint64_t* best, int capacity) {
 }  // namespace
 }  // namespace scan
 
-#include "libscan/search/tree_walk.h"
+#include "libscan/search/tree_queries.h"
 
 namespace scan {
 const TreeKernels sse2_kernels = {"SSE2", nearest, k_nearest, next_leaf};

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iterator>
-#include <utility>
 
 #include "libscan/core/error.h"
+#include "libscan/core/nearest_word.h"
 #include "synth/effects/weight.h"
 
 namespace scan::synth {
@@ -19,32 +18,19 @@ constexpr double negligible = 0.02;
 constexpr std::size_t most_views = 8;  // that the pilot looks from
 constexpr int pilot_rays = 4096;       // over all of them
 
-// Levenshtein's distance.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
-    }
-  }
-  return row.back();
-}
-
 Effect known_effect(const std::string& word) {
   if (const auto effect = effect_named(word)) return *effect;
-  const auto effects = all_effects();
-  const auto nearest = *std::min_element(effects.begin(), effects.end(), [&](Effect a, Effect b) {
-    return edit_distance(word, name(a)) < edit_distance(word, name(b));
-  });
+  // As they are typed on the command line, where a space would part them.
+  std::vector<std::string> words;
   std::string known;
-  for (const Effect effect : effects)
-    known += (known.empty() ? "" : ", ") + std::string(name(effect));
-  throw Error(Trouble::usage, "effects: '" + word + "' is unknown, not one of: " + known,
-              "did you mean '" + std::string(name(nearest)) + "'?");
+  for (const Effect effect : all_effects()) {
+    words.emplace_back(name(effect));
+    std::ranges::replace(words.back(), ' ', '-');
+    known += (known.empty() ? "" : ", ") + words.back();
+  }
+  const std::string near = nearest_word(word, words);
+  throw Error(Trouble::usage, "effects: '" + word + "' is none of " + known,
+              near.empty() ? "" : "did you mean '" + near + "'?");
 }
 
 // Evenly spread over the viewpoints.

@@ -55,6 +55,17 @@ inline std::string error_of(const std::function<void()>& body, Trouble trouble =
   return {};
 }
 
+// Its hint.
+inline std::string hint_of(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const Error& error) {
+    return error.hint();
+  }
+  ADD_FAILURE() << "no scan::Error was thrown";
+  return {};
+}
+
 // Hands `read` every truncation of a good file and `flips` copies with up to four bytes changed.
 // Each must be read or refused by scan::Error; anything else (another exception, a crash) fails.
 inline void expect_read_or_refused(const std::string& good, int flips,

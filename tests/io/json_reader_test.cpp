@@ -60,6 +60,29 @@ TEST(JsonReader, NamesPlaceAndValueOfWrongTypes) {
   EXPECT_EQ(error_of([&] { reader.number("missing"); }), "a.json/missing: is missing");
 }
 
+// A key that reads nearly like the missing one, with or without its unit.
+TEST(JsonReader, NamesWhatWasMeantByAMistypedKey) {
+  const nlohmann::json json = {{"focal_pix", 3}, {"radus_mm", 2}, {"kind", 1}};
+  JsonReader reader(json, "a.json");
+  EXPECT_EQ(hint_of([&] { reader.number("focal_px"); }), "did you mean 'focal_px' by 'focal_pix'?");
+  EXPECT_EQ(hint_of([&] { reader.length_m("radius"); }), "did you mean 'radius_mm' by 'radus_mm'?");
+  EXPECT_EQ(hint_of([&] { reader.number("weight"); }), "");
+  reader.number("kind");
+  EXPECT_EQ(hint_of([&] { reader.number("kinds"); }), "") << "a key that was asked for is right";
+}
+
+TEST(JsonReader, TakesExactlyOneOfSeveralKeys) {
+  const nlohmann::json one = {{"area", 1}}, two = {{"area", 1}, {"point", 1}}, none = {{"pont", 1}};
+  const std::vector<std::string> words = {"point", "area"};
+  EXPECT_EQ(JsonReader(one, "a").one_of(words), "area");
+  EXPECT_NE(error_of([&] { JsonReader(two, "a").one_of(words); }).find("a/area: stands beside"),
+            std::string::npos);
+  EXPECT_EQ(error_of([&] { JsonReader(none, "a").one_of(words); }),
+            "a: must have one of point, area");
+  EXPECT_EQ(hint_of([&] { JsonReader(none, "a").one_of(words); }),
+            "did you mean 'point' by 'pont'?");
+}
+
 // A number that no `long` holds would come back as another one.
 TEST(JsonReader, RefusesWholeNumbersBeyondItsRange) {
   const json object = {{"i", 18446744073709551615ull}};
@@ -86,11 +109,6 @@ TEST(JsonReader, NamesTheLineOfASyntaxError) {
   write_file(folder / "a.json", std::string(200000, '[') + std::string(200000, ']'));
   EXPECT_NE(error_of([&] { read_json(folder / "a.json"); }).find("deeper than 256"),
             std::string::npos);
-}
-
-TEST(NearestWord, TakesTheNearestAndNothingTooFar) {
-  EXPECT_EQ(nearest_word("spere", {"sphere", "box"}), "sphere");
-  EXPECT_EQ(nearest_word("zebra", {"sphere", "box"}), "");
 }
 
 TEST(WriteFile, LeavesTheOldOrTheNewWhole) {

@@ -23,15 +23,16 @@ double length_of_path(const Points& points, const std::vector<std::uint32_t>& or
 }
 
 TEST(CurveOrder, NamesEachPointOnceAndTheFiniteFirst) {
-  for (const auto& [name, points] : hard_clouds(1000)) {
+  for (const NamedCloud& cloud : hard_clouds(1000)) {
+    const Points& points = cloud.points;
     const std::vector<std::uint32_t> order = curve_order(points);
     std::vector<std::uint32_t> sorted = order, all(points.size());
     std::iota(all.begin(), all.end(), 0u);
     std::sort(sorted.begin(), sorted.end());
-    EXPECT_EQ(sorted, all) << name;
+    EXPECT_EQ(sorted, all) << cloud.name;
     EXPECT_TRUE(std::is_partitioned(order.begin(), order.end(), [&](auto i) {
       return points[i].allFinite();
-    })) << name;
+    })) << cloud.name;
   }
 }
 
@@ -100,11 +101,28 @@ TEST_P(EachBatch, LaysTheKNearestInRows) {
           for (std::size_t i = 0; i < queries_.size(); i += 10) {
             search.k_nearest(queries_[i], k, row);
             row.resize(m, {no_point, unlimited_m});
-            EXPECT_TRUE(std::equal(row.begin(), row.end(), &found[i * m])) << "query " << i;
+            EXPECT_TRUE(std::equal(row.begin(), row.end(), found.data() + i * m)) << "query " << i;
           }
         },
         any_);
   }
+}
+
+TEST_P(EachBatch, GathersAllWithinARadius) {
+  std::visit(
+      [&](const auto& search) {
+        const Neighbourhoods all = within_of_each(search, queries_, 2 * spacing_m, order_);
+        ASSERT_EQ(all.first.size(), queries_.size() + 1);
+        EXPECT_EQ(all.first.back(), all.found.size());
+        EXPECT_GT(all.found.size(), queries_.size());
+        std::vector<Neighbour> mine;
+        for (std::size_t i = 0; i < queries_.size(); ++i) {
+          search.within(queries_[i], 2 * spacing_m, mine);
+          ASSERT_EQ(all.first[i + 1] - all.first[i], mine.size()) << "query " << i;
+          EXPECT_TRUE(std::equal(mine.begin(), mine.end(), all.found.data() + all.first[i]));
+        }
+      },
+      any_);
 }
 
 TEST_P(EachBatch, AnswersTheSameForAnyNumberOfThreads) {

@@ -79,6 +79,29 @@ inline Points collinear_cloud(std::size_t count) {
   });
 }
 
+// A plane across the axes, at whose points the normal direction has rounding only.
+inline Points coplanar_cloud(std::size_t count) {
+  return drawn(count, 6, [](RandomStream& random, std::size_t) -> Eigen::Vector3d {
+    const double a = random.uniform(), b = random.uniform();
+    return a * Eigen::Vector3d(1, 2, -3) + b * Eigen::Vector3d(3, 0, 1);
+  });
+}
+
+// Every other point in a cube of a hundredth of the side: a million times as dense.
+inline Points uneven_cloud(std::size_t count) {
+  return drawn(count, 7, [](RandomStream& random, std::size_t i) -> Eigen::Vector3d {
+    return (i % 2 == 0 ? 1 : 0.01) * in_cube(random);
+  });
+}
+
+// Ever nearer to the middle, down to the least float: the deepest octree there is.
+inline Points halved_cloud(std::size_t count) {
+  Points points;
+  for (std::size_t i = 0; i < count; ++i)
+    points.emplace_back(std::ldexp(i % 2 == 0 ? 1 : -1, -static_cast<int>(i / 2 % 148)), 0, 0);
+  return points;
+}
+
 inline Points moved(Points points, double scale, const Eigen::Vector3d& offset) {
   for (auto& point : points) point = scale * point + offset;
   return points;
@@ -103,6 +126,7 @@ inline std::vector<NamedCloud> hard_clouds(std::size_t count) {
   const Eigen::Vector3d far(1e7, -1e7, 1e7), none = Eigen::Vector3d::Zero();
   return {{"empty", {}},
           {"single", uniform_cloud(1)},
+          {"pair", uniform_cloud(2)},
           {"identical", Points(count, {0.1, 0.2, 0.3})},
           {"uniform", uniform_cloud(count)},
           {"surface", surface_cloud(count)},
@@ -110,9 +134,13 @@ inline std::vector<NamedCloud> hard_clouds(std::size_t count) {
           {"duplicates", duplicate_cloud(count)},
           {"lattice", lattice_cloud(static_cast<int>(std::cbrt(static_cast<double>(count))))},
           {"collinear", collinear_cloud(count)},
+          {"coplanar", coplanar_cloud(count)},
+          {"uneven", uneven_cloud(count)},
+          {"halved", halved_cloud(count)},
           {"holes", with_holes(uniform_cloud(count))},
           {"only holes", Points(20, Eigen::Vector3d::Constant(std::nan("")))},
           {"far", moved(surface_cloud(count), 1, far)},
+          {"far and fine", moved(surface_cloud(count), 1e-3, far)},
           {"far and small", moved(surface_cloud(count), 1e-6, far)},
           {"tiny", moved(uniform_cloud(count), 1e-6, none)},
           {"huge", moved(uniform_cloud(count), 1e6, none)},

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
+#include "libscan/search/tree_kernels.h"
 #include "tests/search/clouds.h"
 
 namespace scan {
@@ -45,6 +48,36 @@ TEST(LocalQuery, NeverScreensOutAPointOnTheLimit) {
     }
   }
   EXPECT_GT(tried, 3000u);
+}
+
+// The promise on which the choice among candidates rests: of two points, the farther in truth never
+// makes the nearer one look as if it were out of the running.
+TEST(LocalQuery, WidensEnoughForEveryPointThatIsAsNear) {
+  RandomStream random(6, 0, 0);
+  std::size_t nearly_equal = 0;
+  for (const auto& [name, points] : hard_clouds(300)) {
+    const LocalFrame frame = local_frame(points);
+    const LargeArray<LocalPoint> local = local_points(points, frame);
+    for (std::size_t i = 0; i + 1 < local.size(); ++i) {
+      const Eigen::Vector3d &a = points[local[i].index], &b = points[local[i + 1].index];
+      // Near the plane between the two.
+      const Eigen::Vector3d middle = a + (b - a) / 2, across = normal_vector(random).cross(b - a);
+      const Eigen::Vector3d query_m = middle + std::pow(10.0, 6 * random.uniform() - 3) * across;
+      const LocalQuery query(frame, query_m);
+      const auto float_distance2 = [&](const LocalPoint& point) {
+        float sum = 0;
+        for (int axis = 0; axis < 3; ++axis)
+          sum += (point.at[axis] - query.at[axis]) * (point.at[axis] - query.at[axis]);
+        return sum;
+      };
+      const bool a_first = squared_distance_m2(a, query_m) <= squared_distance_m2(b, query_m);
+      const float nearer2 = float_distance2(local[a_first ? i : i + 1]);
+      const float farther2 = float_distance2(local[a_first ? i + 1 : i]);
+      EXPECT_LE(nearer2, widened(farther2, query.widening())) << name;
+      if (farther2 < nearer2) ++nearly_equal;
+    }
+  }
+  EXPECT_GT(nearly_equal, 100u);  // those that float puts the wrong way round
 }
 
 // And it screens: beyond twice the slack and 2^-19 of the distance nothing gets through.

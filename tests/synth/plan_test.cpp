@@ -142,7 +142,7 @@ TEST(EffectPlan, NamesTheNearestKnownEffect) {
   } catch (const Error& error) {
     EXPECT_EQ(error.trouble(), Trouble::usage);
     EXPECT_NE(std::string(error.what()).find("shot nose"), std::string::npos);
-    EXPECT_EQ(error.hint(), "did you mean 'shot noise'?");
+    EXPECT_EQ(error.hint(), "did you mean 'shot-noise'?");
   }
 }
 
