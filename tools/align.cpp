@@ -1,17 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // scan align: scans into one frame.
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "libscan/align/multiview.h"
 #include "libscan/core/error.h"
+#include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
+#include "tools/align_starts.h"
 #include "tools/commands.h"
-#include "tools/global_guesses.h"
 #include "tools/inputs.h"
+#include "tools/pairs_file.h"
+#include "tools/version.h"
 
 namespace scan {
 namespace {
@@ -24,34 +28,8 @@ struct Arguments {
   bool global = false;
   double max_distance_m = 0;
   double thin_m = 0;
+  bool resume = false;
 };
-
-std::string stem(const std::string& path) {
-  return std::filesystem::path(path).stem().string();
-}
-
-// The first guess of each scan: by name from the file of poses, else by order, else the scan's own.
-std::vector<Pose> guesses(const Arguments& arguments, const std::vector<std::string>& inputs,
-                          const std::vector<Scan>& scans) {
-  std::vector<Pose> poses;
-  if (arguments.init.empty()) {
-    for (const Scan& scan : scans) poses.push_back(scan.world_from_scanner_guess);
-    return poses;
-  }
-  const auto named = read_poses(arguments.init);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const NamedPose* found = nullptr;
-    for (const NamedPose& pose : named)
-      if (stem(pose.name) == stem(inputs[i])) found = &pose;
-    if (!found && named.size() == inputs.size()) found = &named[i];
-    if (!found)
-      throw Error(Trouble::input, arguments.init + ": has no pose for " + inputs[i] + " and " +
-                                      std::to_string(named.size()) + " poses for " +
-                                      std::to_string(inputs.size()) + " scans");
-    poses.push_back(found->pose);
-  }
-  return poses;
-}
 
 MultiviewOptions options_from(const Arguments& arguments) {
   MultiviewOptions options;
@@ -65,9 +43,6 @@ MultiviewOptions options_from(const Arguments& arguments) {
 void write_results(const std::filesystem::path& folder, const std::vector<std::string>& inputs,
                    const std::vector<Scan>& scans, const MultiviewResult& result,
                    const nlohmann::ordered_json& json) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw Error(Trouble::output, folder.string() + ": " + error.message());
   std::vector<Pose> poses;
   std::vector<NamedPose> named;
   for (std::size_t i = 0; i < scans.size(); ++i) {
@@ -79,74 +54,67 @@ void write_results(const std::filesystem::path& folder, const std::vector<std::s
   write_scan(folder / "aligned.ply", Scan{.name = "aligned", .cloud = joined(scans, poses)});
 }
 
-MultiviewResult align_from_guesses(const std::vector<Scan>& scans, const std::vector<Pose>& first,
-                                   const MultiviewOptions& options, Console& console) {
-  std::vector<PointCloud> clouds;
-  clouds.reserve(scans.size());
-  for (const Scan& scan : scans) clouds.push_back(scan.cloud);
-  MultiviewResult result = align_scans(clouds, first, options, console.progress());
-  console.time("align", result.cost.seconds);
-  return result;
+// Of all that decides the pairs.
+std::string fingerprint_of(const Arguments& arguments, const std::vector<std::string>& inputs,
+                           const Starts& starts) {
+  nlohmann::ordered_json all = {version_text(),           arguments.method, arguments.search,
+                                arguments.max_distance_m, arguments.thin_m, starts.scans};
+  for (const std::string& input : inputs) all.push_back(fingerprint(read_file(input)));
+  for (const Pose& guess : starts.world_from_scan)
+    all.push_back(std::vector<double>(guess.matrix().data(), guess.matrix().data() + 16));
+  return fingerprint(all.dump());
 }
 
-// Only scans that were tied together are refined together: the others have no guess to start from.
-MultiviewResult align_tied(const std::vector<Scan>& scans, const std::vector<GlobalGuess>& found,
-                           const MultiviewOptions& options, Console& console) {
-  std::vector<std::size_t> tied;
-  std::vector<Scan> some;
-  std::vector<Pose> first;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    if (found[i].trust == 0) continue;
-    tied.push_back(i);
-    some.push_back(scans[i]);
-    first.push_back(found[i].world_from_scan);
+// Keeps the pairs in the folder, also when the work is interrupted.
+MultiviewResult align_kept(const std::vector<PointCloud>& clouds, const std::vector<Pose>& guesses,
+                           MultiviewOptions options, const std::filesystem::path& pairs,
+                           const std::string& inputs, const Console& console) {
+  std::vector<ScanEdge> finished = options.known_edges;
+  options.on_edge = [&](const ScanEdge& edge) { finished.push_back(edge); };
+  const auto keep = [&] {
+    std::stable_sort(finished.begin(), finished.end(), [](const ScanEdge& a, const ScanEdge& b) {
+      return std::pair(a.source, a.target) < std::pair(b.source, b.target);
+    });
+    write_pairs(pairs, inputs, finished);
+  };
+  try {
+    MultiviewResult result = align_scans(clouds, guesses, options, console.progress());
+    keep();
+    return result;
+  } catch (const Interrupted&) {
+    keep();
+    throw;
   }
-  MultiviewResult part = align_from_guesses(some, first, options, console);
-  MultiviewResult result = part;
-  result.scans.assign(scans.size(), {});
-  for (std::size_t i = 0; i < scans.size(); ++i)
-    if (found[i].outcome == GlobalOutcome::no_overlap)
-      result.scans[i].stop = Stop::no_correspondences;
-  for (std::size_t k = 0; k < tied.size(); ++k) result.scans[tied[k]] = std::move(part.scans[k]);
-  if (tied.size() < scans.size()) result.stop = Stop::no_correspondences;
-  return result;
 }
 
-void tell_of_guess(const std::string& input, const GlobalGuess& guess, Console& console) {
-  if (guess.outcome == GlobalOutcome::ambiguous)
-    console.warn(input + ": several poses explain it equally well; one of them was taken");
-  else if (guess.outcome != GlobalOutcome::aligned)
-    console.warn(input + ": " + std::string(name_of(guess.outcome)) + " with the other scans");
-}
-
-struct Aligned {
-  MultiviewResult result;
-  nlohmann::ordered_json json;
-};
-
-Aligned align_without_guess(const std::vector<std::string>& inputs, const std::vector<Scan>& scans,
-                            const MultiviewOptions& options, Console& console) {
-  const Stopwatch watch;
-  const std::vector<GlobalGuess> found = global_guesses(scans, console.progress());
-  console.time("global", watch.seconds());
-  Aligned aligned{align_tied(scans, found, options, console), {}};
-  aligned.json = alignment_json(inputs, aligned.result, options.icp);
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    tell_of_guess(inputs[i], found[i], console);
-    aligned.json["scans"][i]["global"] = name_of(found[i].outcome);
-    aligned.json["scans"][i]["trust"] = found[i].trust;
+// One line per scan, then what became of the pairs. False if a scan could not be aligned.
+bool tell(const std::vector<std::string>& inputs, const MultiviewResult& result, Console& console) {
+  bool complete = true;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const ScanPose& pose = result.scans[i];
+    console.say(inputs[i] + ": " + std::string(name_of(pose.stop)) + ", rms " +
+                readable_length(pose.rms_m) + ", inliers " +
+                readable_value(100 * pose.inlier_fraction_of_source, "count") + " %");
+    complete &= tell_of_pose(inputs[i], pose, console);
   }
-  return aligned;
+  std::size_t accepted = 0;
+  for (const ScanEdge& edge : result.edges) {
+    accepted += edge.accepted;
+    if (!edge.accepted)
+      console.detail(inputs[edge.source] + " and " + inputs[edge.target] + ": rejected, " +
+                     (edge.stop == Stop::converged ? "disagrees with the other pairs"
+                                                   : std::string(name_of(edge.stop))));
+  }
+  console.say(std::to_string(accepted) + " of " + std::to_string(result.edges.size()) +
+              " pairs agree");
+  return complete;
 }
 
-Aligned align(const Arguments& arguments, const std::vector<std::string>& inputs,
-              const std::vector<Scan>& scans, Console& console) {
-  const MultiviewOptions options = options_from(arguments);
-  if (arguments.global) return align_without_guess(inputs, scans, options, console);
-  const std::vector<Pose> first = guesses(arguments, inputs, scans);
-  MultiviewResult result = align_from_guesses(scans, first, options, console);
-  nlohmann::ordered_json json = alignment_json(inputs, result, options.icp);
-  return {std::move(result), std::move(json)};
+void tell_trust(const std::vector<GlobalGuess>& found, nlohmann::ordered_json& json) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    json["scans"][i]["global"] = name_of(found[i].outcome);
+    json["scans"][i]["trust"] = found[i].trust;
+  }
 }
 
 int align_files(const Arguments& arguments, Console& console) {
@@ -155,18 +123,25 @@ int align_files(const Arguments& arguments, Console& console) {
     throw Error(Trouble::usage, "--global: finds poses without a guess, --init gives one",
                 "leave one of them out");
   const auto scans = read_scans_with_normals(inputs, console);
-  const auto [result, json] = align(arguments, inputs, scans, console);
-  write_results(output, inputs, scans, result, json);
+  warn_of_units(inputs, scans, console);
+  const Starts starts = arguments.global ? found_starts(inputs, scans, console)
+                                         : given_starts(arguments.init, inputs, scans, console);
+  std::vector<PointCloud> clouds;
+  for (const std::size_t i : starts.scans) clouds.push_back(scans[i].cloud);
 
-  bool complete = true;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    const ScanPose& pose = result.scans[i];
-    console.say(inputs[i] + ": " + std::string(name_of(pose.stop)) + ", rms " +
-                readable_length(pose.rms_m) + ", inliers " +
-                readable_value(100 * pose.inlier_fraction_of_source, "count") + " %");
-    complete &= tell_of_pose(inputs[i], pose, console);
-  }
-  if (!complete)
+  make_folder(output);
+  const std::filesystem::path folder = output;
+  const std::string decided_by = fingerprint_of(arguments, inputs, starts);
+  MultiviewOptions options = options_from(arguments);
+  if (arguments.resume) options.known_edges = read_pairs(folder / "pairs.json", decided_by);
+  MultiviewResult part = align_kept(clouds, starts.world_from_scan, options, folder / "pairs.json",
+                                    decided_by, console);
+  const MultiviewResult result = of_all(std::move(part), starts, scans.size());
+  console.time("align", result.cost.seconds);
+  auto json = alignment_json(inputs, result, options.icp);
+  tell_trust(starts.found, json);
+  write_results(folder, inputs, scans, result, json);
+  if (!tell(inputs, result, console))
     throw Error(Trouble::computation, "not every scan could be aligned; " + output +
                                           "/alignment.json says which and why");
   console.finish("align", "ok", json);
@@ -191,6 +166,7 @@ Action align_command(CommandLine& line) {
               "pairs farther apart do not count; found from the data if not given");
   line.length("--thin", arguments->thin_m,
               "side of the cubes that thin the clouds for the joint step");
+  line.flag("--resume", arguments->resume, "go on with the pairs of an interrupted call in OUT");
   return [arguments](Console& console) { return align_files(*arguments, console); };
 }
 

@@ -2,12 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/inputs.h"
 
+#include <array>
+#include <cmath>
 #include <filesystem>
 
+#include "libscan/align/median.h"
 #include "libscan/core/error.h"
 #include "libscan/io/scan_file.h"
+#include "libscan/io/text.h"
 
 namespace scan {
+namespace {
+
+// Details and whole objects differ by less in size; the factors are those between inches,
+// centimetres, millimetres, micrometres and the metre.
+constexpr double least_suspect_ratio = 30;
+constexpr std::array<double, 4> suspect_factors = {39.37, 100, 1000, 1e6};
+
+}  // namespace
 
 std::pair<std::vector<std::string>, std::string> split_output(std::vector<std::string> paths) {
   if (paths.size() < 2)
@@ -37,6 +49,28 @@ std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths,
     estimate_normals(scan);
   }
   return scans;
+}
+
+void warn_of_units(const std::vector<std::string>& paths, const std::vector<Scan>& scans,
+                   Console& console) {
+  std::vector<double> sizes_m;
+  for (const Scan& scan : scans) {
+    const Bounds box = bounds_of(scan.cloud.points);
+    sizes_m.push_back(box.isEmpty() ? 0 : box.diagonal().norm());
+  }
+  const double usual_m = median(sizes_m);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (!(sizes_m[i] > 0)) continue;
+    const double ratio = sizes_m[i] / usual_m;
+    const double off = std::abs(std::log10(ratio));
+    if (off < std::log10(least_suspect_ratio)) continue;
+    double factor = suspect_factors.front();
+    for (const double other : suspect_factors)
+      if (std::abs(std::log10(other) - off) < std::abs(std::log10(factor) - off)) factor = other;
+    console.warn(paths[i] + ": its size is " + readable_length(sizes_m[i]) + ", that of most is " +
+                 readable_length(usual_m) + "; another unit? Then scale it by " +
+                 shortest(ratio > 1 ? 1 / factor : factor));
+  }
 }
 
 bool tell_of_pose(const std::string& scan, const ScanPose& pose, Console& console) {

@@ -23,6 +23,10 @@ void check_output(const std::string& path);
 // Reads scans; those without normals get them by plane fits, facing their viewpoint.
 std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths, Console& console);
 
+// Warns of scans so much larger or smaller than the others that their unit may be another one.
+void warn_of_units(const std::vector<std::string>& paths, const std::vector<Scan>& scans,
+                   Console& console);
+
 // Warns of a pose that the data leave partly free or that still moved at the last round. False if
 // the scan could not be aligned at all.
 bool tell_of_pose(const std::string& scan, const ScanPose& pose, Console& console);

@@ -51,7 +51,7 @@ void fields(Fields& f, MultiviewOptions& o) {
   f.integer("max_iterations", o.icp.max_iterations);
   f.length("thin", o.thin_m);
   f.integer("max_rounds", o.max_rounds);
-  f.number("min_overlap", o.min_overlap);
+  f.number("min_overlap", o.icp.min_overlap);
 }
 
 void fields(Fields& f, ReconstructSettings& s) {

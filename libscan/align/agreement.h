@@ -10,23 +10,21 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
-#include "libscan/core/point_cloud.h"
-#include "libscan/search/kd_tree.h"
+#include "libscan/align/prepared_cloud.h"
 
 namespace scan {
 
-// Residuals up to this many metres are the scan's own doing: three times sigma_m, or three sigma of
-// what its points differ from the plane of their nearest neighbour (noise, curvature and sampling
-// together), but not less than a quarter of its spacing.
-double tolerated_residual_m(const PointCloud& cloud, const KdTree& search);
+// Residuals up to this many metres are the scan's own doing: three times the `sigma_m` that the
+// device tells (0: it does not), or three sigma of what its points differ from the plane of their
+// nearest neighbour (noise, curvature and sampling together), but not less than a quarter of its
+// spacing.
+double tolerated_residual_m(const PreparedCloud& cloud, double sigma_m);
 
-// A scan at a pose; all three outlive it.
+// A scan, which outlives it, at a pose of its prepared points.
 struct PosedScan {
-  const PointCloud* cloud = nullptr;
-  const KdTree* search = nullptr;
-  Pose world_from_scan = Pose::Identity();
+  const PreparedCloud* cloud = nullptr;
+  Pose world_from_local = Pose::Identity();
   double tolerance_m = 0;
 };
 

@@ -2,71 +2,186 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/align/joint_refinement.h"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "libscan/align/joint_system.h"
 #include "libscan/core/error.h"
 
 namespace scan {
 namespace {
 
-// |S (x_source - x_target) - c|^2 with S^T S = A and S^T c = b, which is the form up to a constant.
-class FormCost : public ceres::SizedCostFunction<6, 6, 6> {
- public:
-  explicit FormCost(const ScanPairForm& form) {
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(form.a);
-    const double least = 1e-12 * std::max(solver.eigenvalues()[5], 1e-300);
-    for (int i = 0; i < 6; ++i) {
-      if (!(solver.eigenvalues()[i] > least)) continue;  // fixes nothing along this motion
-      const double root = std::sqrt(solver.eigenvalues()[i]);
-      root_.row(i) = root * solver.eigenvectors().col(i).transpose();
-      right_[i] = solver.eigenvectors().col(i).dot(form.b) / root;
+// What n planes draw of the noise is off by sqrt(2 / n): from 200 planes on this is five sigma
+// above noise alone.
+constexpr double noise_multiple = 1.2;
+constexpr double rounding_share = 1e-10;  // as in observability.cpp
+constexpr int subspace_rounds = 30;
+// More weak motions than that are looked for scan by scan, the others held.
+constexpr Eigen::Index most_together = 48;
+constexpr Eigen::Index spare_columns = 4;
+// A scan's part of a weak motion counts from this share of the largest part of any scan.
+constexpr double own_share = 0.2;
+
+using Sparse = Eigen::SparseMatrix<double>;
+using Factor = Eigen::SimplicialLDLT<Sparse>;
+
+Sparse matrix_of(const JointSystem& system, const JointEntries& entries) {
+  Sparse matrix(system.rows(), system.rows());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+// A + a share of its diagonal, so that what nothing holds stays where it is.
+std::unique_ptr<Factor> damped_factor(const Sparse& a, double share) {
+  Sparse damped = a;
+  const double least = 1e-3 * a.diagonal().mean();
+  for (Eigen::Index i = 0; i < a.rows(); ++i)
+    damped.coeffRef(i, i) += share * std::max(a.coeff(i, i), least);
+  auto factor = std::make_unique<Factor>(damped);
+  if (factor->info() != Eigen::Success)
+    throw Error(Trouble::computation, "align_scans: the joint system is singular");
+  return factor;
+}
+
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
+}
+
+// The `count` least v^T A v / v^T G v, by inverse iteration on a subspace with Rayleigh-Ritz.
+Eigen::MatrixXd least_motions(const Sparse& a, const Sparse& g, Eigen::Index count) {
+  const Eigen::Index columns = std::min(a.rows(), count + spare_columns);
+  const auto factor = damped_factor(a, rounding_share);
+  Eigen::MatrixXd x(a.rows(), columns);  // any start that has a part of all will do
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    for (Eigen::Index k = 0; k < columns; ++k)
+      x(i, k) = std::sin(1.0 + 0.7 * double(i + 1) * double(k + 1));
+  Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
+  for (int round = 0; round < subspace_rounds; ++round) {
+    x = orthonormal(factor->solve(Eigen::MatrixXd(g * x)));
+    ritz.compute(x.transpose() * (a * x), x.transpose() * (g * x));
+    x = (x * ritz.eigenvectors()).eval();
+  }
+  return orthonormal(x.leftCols(count));
+}
+
+// The motions of each scan by itself with v^T A v < v^T G v.
+Eigen::MatrixXd own_motions(const Sparse& a, const Sparse& g) {
+  std::vector<Eigen::VectorXd> columns;
+  for (Eigen::Index row = 0; row < a.rows(); row += 6) {
+    const Matrix6 own(a.block(row, row, 6, 6)), limit(g.block(row, row, 6, 6));
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(own, limit);
+    const Eigen::Index count = (solver.eigenvalues().array() < 1).count();
+    if (count == 0) continue;
+    const Eigen::MatrixXd basis = orthonormal(solver.eigenvectors().leftCols(count));
+    for (Eigen::Index k = 0; k < count; ++k) {
+      columns.push_back(Eigen::VectorXd::Zero(a.rows()));
+      columns.back().segment<6>(row) = basis.col(k);
     }
   }
+  Eigen::MatrixXd all(a.rows(), Eigen::Index(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) all.col(Eigen::Index(k)) = columns[k];
+  return all;
+}
 
-  bool Evaluate(double const* const* x, double* residual, double** jacobian) const override {
-    using Map = Eigen::Map<const Vector6>;
-    using RowMajor = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-    Eigen::Map<Vector6> out(residual);
-    out = root_ * (Map(x[0]) - Map(x[1])) - right_;
-    if (jacobian && jacobian[0]) Eigen::Map<RowMajor>{jacobian[0]} = root_;
-    if (jacobian && jacobian[1]) Eigen::Map<RowMajor>{jacobian[1]} = -root_;
-    return true;
-  }
-
- private:
-  Matrix6 root_ = Matrix6::Zero();
-  Vector6 right_ = Vector6::Zero();
-};
+// Removes what of x lies along `weak`, at the least cost in x^T A x.
+Eigen::VectorXd withheld(const Eigen::VectorXd& x, const Factor& factor, const JointBasis& weak) {
+  if (weak.cols() == 0) return x;
+  const Eigen::MatrixXd reply = factor.solve(weak);
+  return x - reply * (weak.transpose() * reply).ldlt().solve(weak.transpose() * x);
+}
 
 }  // namespace
 
-std::vector<Vector6> solve_forms(std::span<const ScanPairForm> forms, std::size_t scans,
-                                 const std::vector<bool>& fixed) {
-  std::vector<Vector6> twists(scans, Vector6::Zero());
-  ceres::Problem problem;
-  for (Vector6& twist : twists) problem.AddParameterBlock(twist.data(), 6);
-  for (std::size_t i = 0; i < scans; ++i)
-    if (fixed[i]) problem.SetParameterBlockConstant(twists[i].data());
-  for (const ScanPairForm& form : forms)
-    problem.AddResidualBlock(new FormCost(form), nullptr, twists[form.source].data(),
-                             twists[form.target].data());
-  ceres::Solver::Options options;
-  options.num_threads = 1;  // the same bits every time
-  options.logging_type = ceres::SILENT;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = 20;
-  options.initial_trust_region_radius = 1e8;  // nearly a full step: the problem is quadratic
-  options.function_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-14;
-  options.gradient_tolerance = 1e-16;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable())
-    throw Error(Trouble::computation, "align_scans: the joint step failed: " + summary.message);
-  return twists;
+JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame) {
+  const JointSystem system(forms, frame);
+  const auto none = JointBasis(6 * Eigen::Index(frame.centres.size()), 0);
+  if (system.rows() == 0) return none;
+  const Sparse apparent =
+      matrix_of(system, system.sum([](const JointForm& form) { return form.apparent; }));
+  Sparse limit = noise_multiple *
+                 matrix_of(system, system.sum([](const JointForm& form) { return form.noise; }));
+  const double least = rounding_share * std::max(apparent.diagonal().mean(), 1e-300);
+  for (Eigen::Index i = 0; i < limit.rows(); ++i) limit.coeffRef(i, i) += least;
+  const Factor factor(apparent - limit);
+  if (factor.info() != Eigen::Success)
+    throw Error(Trouble::computation, "align_scans: the joint information is singular");
+  const Eigen::Index count = (factor.vectorD().array() < 0).count();
+  if (count == 0) return none;
+  return system.expanded(count > most_together ? own_motions(apparent, limit)
+                                               : least_motions(apparent, limit, count));
+}
+
+std::vector<Vector6> joint_step(std::span<const JointForm> forms, const JointFrame& frame,
+                                const JointBasis& weak) {
+  const JointSystem system(forms, frame);
+  if (system.rows() == 0) return std::vector<Vector6>(frame.centres.size(), Vector6::Zero());
+  const auto factor = damped_factor(
+      matrix_of(system, system.sum([](const JointForm& form) { return form.a; })), rounding_share);
+  const Eigen::VectorXd x = factor->solve(system.right_side());
+  return system.twists(withheld(x, *factor, system.reduced(weak)));
+}
+
+std::vector<double> squared_steps(std::span<const JointForm> forms, const JointFrame& frame,
+                                  std::span<const Vector6> twists) {
+  std::vector<double> squares(twists.size(), 0);
+  for (const JointForm& form : forms)
+    for (const std::size_t scan : {form.source, form.target}) {
+      const Vector6 x = twist_to_form(frame, scan, form) * twists[scan];
+      squares[scan] += x.dot(form.a * x);
+    }
+  return squares;
+}
+
+TwistBasis weak_motions_of(std::size_t scan, const JointBasis& weak) {
+  if (weak.cols() == 0) return TwistBasis(6, 0);
+  std::vector<Vector6> own;
+  for (Eigen::Index k = 0; k < weak.cols(); ++k) {
+    const Vector6 part = weak.col(k).segment<6>(6 * Eigen::Index(scan));
+    if (part.isZero(0)) continue;
+    double largest = 0;
+    for (Eigen::Index i = 0; i < weak.rows(); i += 6)
+      largest = std::max(largest, weak.col(k).segment<6>(i).norm());
+    if (part.norm() > own_share * largest) own.push_back(part / largest);
+  }
+  if (own.empty()) return TwistBasis(6, 0);
+  TwistBasis parts(6, Eigen::Index(own.size()));
+  for (std::size_t k = 0; k < own.size(); ++k) parts.col(Eigen::Index(k)) = own[k];
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(parts), Eigen::ComputeThinU);
+  const Eigen::Index rank = (svd.singularValues().array() > own_share).count();
+  return svd.matrixU().leftCols(rank);
+}
+
+std::vector<std::optional<Matrix6>> joint_covariances(std::span<const JointForm> forms,
+                                                      std::span<const JointDetail> details,
+                                                      const JointFrame& frame,
+                                                      const JointBasis& weak) {
+  std::vector<std::optional<Matrix6>> covariances(frame.centres.size());
+  for (std::size_t i = 0; i < covariances.size(); ++i)
+    if (!frame.free[i]) covariances[i] = Matrix6::Zero();
+  const JointSystem system(forms, frame);
+  if (system.rows() == 0) return covariances;
+  const auto factor = damped_factor(matrix_of(system, system.sum_of(details)), rounding_share);
+  const Sparse scatter = matrix_of(system, system.scatter(details));
+  const Eigen::MatrixXd open = system.reduced(weak);
+  Matrix6 units = Matrix6::Identity();
+  units.bottomRightCorner<3, 3>() *= frame.size_m;
+  for (std::size_t i = 0; i < covariances.size(); ++i) {
+    if (!system.has(i) || weak_motions_of(i, weak).cols() > 0) continue;
+    Eigen::MatrixXd reply = Eigen::MatrixXd::Zero(system.rows(), 6);
+    reply.middleRows<6>(system.row(i)).setIdentity();
+    reply = factor->solve(reply).eval();
+    for (Eigen::Index k = 0; k < 6; ++k) reply.col(k) = withheld(reply.col(k), *factor, open);
+    const Matrix6 covariance = reply.transpose() * (scatter * reply);
+    covariances[i] = units * (0.5 * (covariance + covariance.transpose())) * units;
+  }
+  return covariances;
 }
 
 }  // namespace scan

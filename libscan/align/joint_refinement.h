@@ -1,32 +1,55 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// The second step of many scans: all poses together, over point-to-plane pairs between all scans
-// that overlap (Pulli 1999; the pairs of two scans are compressed to one quadratic form, so that
-// the solver's work does not grow with the points).
+// The poses of many scans together, by the quadratic forms of their couples: one step, the motions
+// that the data leave open, and the covariance. The forms are linear in the twists, so each is one
+// sparse factorisation.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "libscan/align/multiview.h"
-#include "libscan/align/observability.h"
+#include "libscan/align/joint_pairs.h"
 
 namespace scan {
 
-// The sum of w (r + J x)^2 over the pairs of two scans, x = twist of `source` minus twist of
-// `target`, both about the frame shared by all. To first order only this difference matters: with
-// r = n . (q - p) a twist of the target turns n too, which gives exactly the opposite derivative.
-struct ScanPairForm {
-  std::size_t source = 0, target = 0;
-  std::size_t pairs = 0;
-  double squares_m2 = 0;  // weighted sum of squared residuals
-  double weights = 0;
-  Matrix6 a = Matrix6::Zero();
-  Vector6 b = Vector6::Zero();
+// Where each scan's twist is about, along the world's axes, and the unit of all translations. Scans
+// that are not free stay.
+struct JointFrame {
+  std::vector<Eigen::Vector3d> centres;
+  double size_m = 1;
+  std::vector<bool> free;
 };
 
-// Twists of all scans that minimise the sum of the forms, those of fixed scans zero; by Ceres.
-std::vector<Vector6> solve_forms(std::span<const ScanPairForm> forms, std::size_t scans,
-                                 const std::vector<bool>& fixed);
+// Columns over the twists of all scans, six rows each, in their order.
+using JointBasis = Eigen::MatrixXd;
+
+// Orthonormal basis of the motions of all scans together that noise alone may feign to be fixed:
+// those with v^T A v < 1.2 v^T N v (observability.h), A and N summed over the forms. Sylvester's
+// law of inertia counts them by the pivots of A - 1.2 N; subspace iteration
+// finds them; of more than 48 only what single scans may do, the others held, is found.
+JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame);
+
+// Twists that minimise the sum of the forms, with no part along `weak`; zero for scans that are not
+// free or in no form.
+std::vector<Vector6> joint_step(std::span<const JointForm> forms, const JointFrame& frame,
+                                const JointBasis& weak);
+
+// Squared length of each scan's twist in units of its standard error, the others held.
+std::vector<double> squared_steps(std::span<const JointForm> forms, const JointFrame& frame,
+                                  std::span<const Vector6> twists);
+
+// The part of `weak` that is this scan's own: motions of its block that are not small against the
+// other scans'.
+TwistBasis weak_motions_of(std::size_t scan, const JointBasis& weak);
+
+// Covariance of each scan's twist (rad, m), B^-1 M B^-1 with the curvature B and the scatter M of
+// the pulls, summed over all couples at one place first: so noise that neighbours, or the couples
+// of one scan, have in common counts (Huber 1967; Liang and Zeger 1986). None for scans that are
+// free and in no form or weak.
+std::vector<std::optional<Matrix6>> joint_covariances(std::span<const JointForm> forms,
+                                                      std::span<const JointDetail> details,
+                                                      const JointFrame& frame,
+                                                      const JointBasis& weak);
 
 }  // namespace scan

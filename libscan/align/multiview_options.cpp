@@ -14,9 +14,6 @@ void check(const MultiviewOptions& options) {
   if (options.max_rounds < 1)
     throw Error(Trouble::usage, "align_scans: max_rounds: " + std::to_string(options.max_rounds) +
                                     ", must be at least 1");
-  if (!(options.min_overlap >= 0 && options.min_overlap <= 1))
-    throw Error(Trouble::usage, "align_scans: min_overlap: " + std::to_string(options.min_overlap) +
-                                    ", must be 0 to 1");
   if (options.anchor < 0)
     throw Error(Trouble::usage,
                 "align_scans: anchor: " + std::to_string(options.anchor) + ", must be at least 0");

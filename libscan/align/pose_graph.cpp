@@ -12,47 +12,17 @@
 #include <cmath>
 #include <string>
 
+#include "libscan/align/pose_edge.h"
 #include "libscan/align/spanning_tree.h"
 #include "libscan/core/error.h"
 
 namespace scan {
 namespace {
 
-// Motions that an edge fixes this much worse than its best one count as open.
-constexpr double open_share = 1e-12;
-constexpr double narrowing = 1.4;  // of the limit per round (Yang et al. 2020, remark 5)
+constexpr double open_share = 1e-12;  // of what an edge fixes best; motions below count as open
+constexpr double narrowing = 1.4;     // of the limit per round (Yang et al. 2020, remark 5)
 constexpr int most_final_rounds = 10;
 constexpr double sharp = 1e12;  // blur of a limit that is none
-
-void check_input(std::span<const Pose> starts, std::span<const PoseEdge> edges,
-                 std::size_t anchor) {
-  const auto refuse = [](const std::string& message) {
-    throw Error(Trouble::input, "solve_pose_graph: " + message);
-  };
-  if (anchor >= starts.size())
-    refuse("anchor: " + std::to_string(anchor) + ", must be below " +
-           std::to_string(starts.size()));
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const PoseEdge& edge = edges[i];
-    const std::string name = "edge " + std::to_string(i);
-    if (std::max(edge.source, edge.target) >= starts.size() || edge.source == edge.target)
-      refuse(name + " joins " + std::to_string(edge.source) + " and " +
-             std::to_string(edge.target) + ", must be two of " + std::to_string(starts.size()) +
-             " scans");
-    if (!edge.target_from_source.matrix().allFinite() || !edge.information.allFinite())
-      refuse(name + " is not finite");
-  }
-}
-
-// S with S^T S = information, rows of open motions zero.
-Matrix6 root_of(const Matrix6& information) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
-  const double least = open_share * solver.eigenvalues()[5];
-  Vector6 roots = Vector6::Zero();
-  for (int i = 0; i < 6; ++i)
-    if (solver.eigenvalues()[i] > least) roots[i] = std::sqrt(solver.eigenvalues()[i]);
-  return roots.asDiagonal() * solver.eigenvectors().transpose();
-}
 
 // A scan's pose moved by (rotation about its origin, translation), along the world's axes.
 Pose moved(const Pose& pose, const Vector6& x) {
@@ -93,6 +63,19 @@ struct EdgeError {
   }
 };
 
+// The cost is a chi-square: a change by less than `least` means nothing.
+class EnoughDone : public ceres::IterationCallback {
+ public:
+  explicit EnoughDone(double least) : least_(least) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& state) override {
+    const bool done = state.iteration > 0 && state.step_is_successful && state.cost_change < least_;
+    return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  double least_;
+};
+
 // Weight of a truncated square whose limit is blurred by mu (Yang et al. 2020, equation 14).
 double truncated_weight(double chi_square, double limit, double mu) {
   if (chi_square <= mu / (mu + 1) * limit) return 1;
@@ -119,8 +102,9 @@ class Graph {
   PoseGraph result(std::span<const Pose> starts);
 
  private:
-  void solve();
+  void solve(double least_change = 1e-12);
   void weigh(double mu);
+  bool all_agree();
   bool accept();
   void find_tied();
   Eigen::SparseMatrix<double> information(std::vector<Eigen::Index>& row);
@@ -160,9 +144,12 @@ Graph::Graph(std::span<const Pose> starts, std::span<const PoseEdge> edges, std:
 }
 
 // Moves the poses to the minimum at the present weights.
-void Graph::solve() {
+void Graph::solve(double least_change) {
+  EnoughDone enough(least_change);
+  ceres::Solver::Options options = solver_options();
+  options.callbacks.push_back(&enough);
   ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(), &problem_, &summary);
+  ceres::Solve(options, &problem_, &summary);
   if (!summary.IsSolutionUsable())
     throw Error(Trouble::computation, "solve_pose_graph: " + summary.message);
   for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -185,16 +172,28 @@ void Graph::weigh(double mu) {
 // The limit starts where a walk of `tree_depth` edges there and back, all off the same way, may
 // lead, and ends at the edges' own.
 void Graph::narrow(std::size_t tree_depth) {
+  if (all_agree()) return;
   const double walk = 2.0 * static_cast<double>(tree_depth) + 1;
   for (double mu = 1 / (walk * walk); mu < 100; mu *= narrowing) {
     weigh(mu);
-    solve();
+    solve(1e-2);  // the next round moves the minimum by more
   }
   for (int round = 0; round < most_final_rounds; ++round) {
     if (!accept() && round > 0) break;
     solve();
   }
   weigh(sharp);
+}
+
+// Least squares over all edges, kept where each lies within its limit: nothing is to be narrowed.
+bool Graph::all_agree() {
+  const std::vector<Pose> before = out_.world_from_scan;
+  solve();
+  weigh(sharp);
+  bool agree = true;
+  for (std::size_t i = 0; i < edges_.size(); ++i) agree = agree && out_.chi_square[i] <= limits_[i];
+  if (!agree) out_.world_from_scan = before;
+  return agree;
 }
 
 // True if an edge changed sides.
@@ -269,17 +268,9 @@ PoseGraph Graph::result(std::span<const Pose> starts) {
 
 }  // namespace
 
-double chi_square_limit(const Matrix6& information) {
-  constexpr std::array<double, 7> quantiles = {0, 10.828, 13.816, 16.266, 18.467, 20.515, 22.458};
-  const Matrix6 root = root_of(information);
-  std::size_t fixed = 0;
-  for (int i = 0; i < 6; ++i) fixed += root.row(i).isZero(0) ? 0 : 1;
-  return quantiles[fixed];
-}
-
 PoseGraph solve_pose_graph(std::span<const Pose> starts, std::span<const PoseEdge> edges,
                            std::size_t anchor) {
-  check_input(starts, edges, anchor);
+  check(edges, starts.size(), anchor);
   const SpanningTree tree = spanning_tree(starts, edges, anchor);
   Graph graph(tree.world_from_scan, edges, anchor);
   graph.narrow(tree.depth);

@@ -22,11 +22,7 @@ Vector6 row_of(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal) {
   return row;
 }
 
-// What a pair pulls the pose with, and how strongly it holds it.
-struct Pull {
-  Vector6 gradient = Vector6::Zero();
-  Matrix6 curvature = Matrix6::Zero();
-};
+}  // namespace
 
 Pull pull_of(const PairFinder& finder, const Pose& pose, const Couple& couple,
              const WelschLoss& loss, const DataFrame& frame) {
@@ -67,6 +63,8 @@ Pull pull_of(const PairFinder& finder, const Pose& pose, const Couple& couple,
   }
   return pull;
 }
+
+namespace {
 
 // Orthonormal columns that span what `weak` leaves.
 TwistBasis rest_of(const TwistBasis& weak) {

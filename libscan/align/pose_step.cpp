@@ -16,17 +16,6 @@ constexpr std::size_t chunk = 1024;
 // So many pairs decide what is weak; more would cost time and tell nothing new.
 constexpr std::size_t most_judged = 4096;
 
-// Sums over the pairs of J^T W J and J^T W r.
-struct NormalEquations {
-  Matrix6 a = Matrix6::Zero();
-  Vector6 b = Vector6::Zero();
-  NormalEquations& operator+=(const NormalEquations& other) {
-    a += other.a;
-    b += other.b;
-    return *this;
-  }
-};
-
 template <class Residual>
 void add(NormalEquations& sum, const PointPair& pair, double weight, const DataFrame& frame) {
   auto jacobian = Residual::jacobian(pair, frame.centre).eval();
@@ -42,26 +31,6 @@ void add_metric(NormalEquations& sum, const PointPair& pair, const Eigen::Matrix
   const Eigen::Matrix<double, 6, 3> weighted = weight * jacobian.transpose() * metric;
   sum.a.noalias() += weighted * jacobian;
   sum.b.noalias() -= weighted * PointToPoint::value(pair) / frame.size_m;
-}
-
-NormalEquations normal_equations(const PairFinder& finder, const Pose& pose,
-                                 std::span<const Couple> couples, const WelschLoss& loss,
-                                 const DataFrame& frame) {
-  return ordered_sum(couples.size(), chunk, NormalEquations{},
-                     [&](std::size_t begin, std::size_t end) {
-                       NormalEquations sum;
-                       for (const Couple& couple : couples.subspan(begin, end - begin)) {
-                         const PointPair pair = finder.pair(pose, couple);
-                         const double weight = loss.weight(couple.residual_m);
-                         if (finder.method() == IcpMethod::symmetric)
-                           add<Symmetric>(sum, pair, weight, frame);
-                         else if (finder.method() == IcpMethod::point_to_plane)
-                           add<PointToPlane>(sum, pair, weight, frame);
-                         else
-                           add_metric(sum, pair, finder.metric(pose, couple), weight, frame);
-                       }
-                       return sum;
-                     });
 }
 
 Step rigid_step(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples,
@@ -120,6 +89,28 @@ double rms_m(std::span<const Couple> couples, const WelschLoss& loss) {
     weights += weight;
   }
   return weights > 0 ? std::sqrt(squares_m2 / weights) : 0;
+}
+
+NormalEquations normal_equations(const PairFinder& finder, const Pose& pose,
+                                 std::span<const Couple> couples, const WelschLoss& loss,
+                                 const DataFrame& frame) {
+  return ordered_sum(couples.size(), chunk, NormalEquations{},
+                     [&](std::size_t begin, std::size_t end) {
+                       NormalEquations sum;
+                       for (const Couple& couple : couples.subspan(begin, end - begin)) {
+                         const PointPair pair = finder.pair(pose, couple);
+                         const double weight = loss.weight(couple.residual_m);
+                         if (finder.method() == IcpMethod::point_to_point)
+                           add<PointToPoint>(sum, pair, weight, frame);
+                         else if (finder.method() == IcpMethod::symmetric)
+                           add<Symmetric>(sum, pair, weight, frame);
+                         else if (finder.method() == IcpMethod::point_to_plane)
+                           add<PointToPlane>(sum, pair, weight, frame);
+                         else
+                           add_metric(sum, pair, finder.metric(pose, couple), weight, frame);
+                       }
+                       return sum;
+                     });
 }
 
 Step best_step(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples,

@@ -17,6 +17,20 @@ DataFrame frame_of(const PairFinder& finder, const Pose& pose, std::span<const C
 // Root mean square of the residuals, as the loss weighs them, metres.
 double rms_m(std::span<const Couple> couples, const WelschLoss& loss);
 
+// Sums over the pairs of w J^T J and -w J^T r, r in units of the frame's size.
+struct NormalEquations {
+  Matrix6 a = Matrix6::Zero();
+  Vector6 b = Vector6::Zero();
+  NormalEquations& operator+=(const NormalEquations& other) {
+    a += other.a;
+    b += other.b;
+    return *this;
+  }
+};
+NormalEquations normal_equations(const PairFinder& finder, const Pose& pose,
+                                 std::span<const Couple> couples, const WelschLoss& loss,
+                                 const DataFrame& frame);
+
 struct Step {
   Vector6 twist = Vector6::Zero();
   double change_m = 0;  // root of the weighted sum of squared changes of the residuals
@@ -37,6 +51,16 @@ enum class NormalErrors { of_fits, between_scans };
 MotionInformation motion_information(const PairFinder& finder, const Pose& pose,
                                      std::span<const Couple> couples, const DataFrame& frame,
                                      NormalErrors errors);
+
+// What one pair pulls the pose with, w J^T r, and how strongly it holds it; in units of the frame's
+// size. The curvature is taken between the normals of both scans, whose noise is independent and so
+// adds nothing to it.
+struct Pull {
+  Vector6 gradient = Vector6::Zero();
+  Matrix6 curvature = Matrix6::Zero();
+};
+Pull pull_of(const PairFinder& finder, const Pose& pose, const Couple& couple,
+             const WelschLoss& loss, const DataFrame& frame);
 
 // Inverse covariance of the pose that solves the pairs' equations, as a twist about the frame's
 // centre in (rad, m), zero along `weak`: B^-1 M B^-1 with the mean curvature B and the scatter M of

@@ -18,15 +18,38 @@ ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
+void add_covariance(const ScanPose& scan, ordered_json& json) {
+  for (const char* key :
+       {"sigma_rotation_rad", "sigma_translation_m", "covariance", "covariance_centre_m"})
+    json[key] = nullptr;
+  if (!scan.covariance) return;
+  json["sigma_rotation_rad"] = std::sqrt(scan.covariance->topLeftCorner<3, 3>().trace());
+  json["sigma_translation_m"] = std::sqrt(scan.covariance->bottomRightCorner<3, 3>().trace());
+  json["covariance"] = ordered_json::array();
+  for (const auto& row : scan.covariance->rowwise())
+    json["covariance"].push_back(std::vector<double>(row.begin(), row.end()));
+  json["covariance_centre_m"] =
+      std::vector<double>(scan.covariance_centre.begin(), scan.covariance_centre.end());
+}
+
+ordered_json edge_json(std::span<const std::string> files, const ScanEdge& edge) {
+  return {{"source", files[edge.source]},    {"target", files[edge.target]},
+          {"accepted", edge.accepted},       {"stop", name_of(edge.stop)},
+          {"overlap", number(edge.overlap)}, {"agreement", number(edge.agreement)},
+          {"rms_m", number(edge.rms_m)}};
+}
+
 ordered_json scan_pose_json(const std::string& file, const ScanPose& scan) {
-  return {{"file", file},
-          {"world_from_scan", to_json(scan.world_from_scan)},
-          {"stop", name_of(scan.stop)},
-          {"iterations", scan.iterations},
-          {"rms_m", number(scan.rms_m)},
-          {"inlier_fraction_of_source", number(scan.inlier_fraction_of_source)},
-          {"agreement", number(scan.agreement)},
-          {"weak_directions", scan.weak_directions}};
+  ordered_json json = {{"file", file},
+                       {"world_from_scan", to_json(scan.world_from_scan)},
+                       {"stop", name_of(scan.stop)},
+                       {"iterations", scan.iterations},
+                       {"rms_m", number(scan.rms_m)},
+                       {"inlier_fraction_of_source", number(scan.inlier_fraction_of_source)},
+                       {"agreement", number(scan.agreement)},
+                       {"weak_directions", scan.weak_directions}};
+  add_covariance(scan, json);
+  return json;
 }
 
 }  // namespace
@@ -51,7 +74,10 @@ ordered_json alignment_json(std::span<const std::string> files, const MultiviewR
   ordered_json scans = ordered_json::array();
   for (std::size_t i = 0; i < files.size(); ++i)
     scans.push_back(scan_pose_json(files[i], result.scans[i]));
+  ordered_json pairs = ordered_json::array();
+  for (const ScanEdge& edge : result.edges) pairs.push_back(edge_json(files, edge));
   return {{"scans", scans},
+          {"pairs", pairs},
           {"method", name_of(options.method)},
           {"search", name_of(options.search)},
           {"stop", name_of(result.stop)},

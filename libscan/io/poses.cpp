@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/io/poses.h"
 
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -15,7 +16,9 @@
 namespace scan {
 namespace {
 
-constexpr double max_distance_from_rotation = 1e-3;  // Frobenius norm
+constexpr double max_distance_from_rotation = 1e-6;  // of any entry
+// A quaternion of any length means one rotation: few digits do no harm, a wrong column does.
+constexpr double max_off_length = 5e-4;
 
 struct Line {
   std::size_t number;
@@ -50,19 +53,20 @@ double number_at(const Line& line, std::size_t word, const std::string& file) {
 
 // Exact rotations stay as they are; what is a rotation to rounding only is put back on SO(3).
 Eigen::Matrix3d rotation_near(const Eigen::Matrix3d& matrix, const std::string& place) {
+  if (matrix.determinant() < 0)
+    throw Error(Trouble::input, place + ": the 3x3 part is left-handed, it mirrors the scan");
   const Eigen::Matrix3d rotation = nearest_rotation(matrix);
-  const double distance = (matrix - rotation).norm();
+  const double distance = (matrix - rotation).cwiseAbs().maxCoeff();
   if (!(distance <= max_distance_from_rotation))
     throw Error(Trouble::input, place + ": the 3x3 part is " + shortest(distance) +
-                                    " away from a rotation, at most 0.001");
+                                    " away from a rotation, at most 1e-6");
   return distance < 1e-12 ? matrix : rotation;
 }
 
 Eigen::Matrix3d rotation_of(const std::array<double, 4>& q, const std::string& place) {
   const Eigen::Quaterniond quaternion(q[3], q[0], q[1], q[2]);
   const double length = quaternion.norm();
-  // R scales with |q|^2, so the same limit as for matrices is half of it here
-  if (!(std::abs(length - 1) <= max_distance_from_rotation / 2))
+  if (!(std::abs(length - 1) <= max_off_length))
     throw Error(Trouble::input, place + ": the quaternion's length is " + shortest(length) +
                                     ", must be 1 within 0.0005");
   return quaternion.normalized().toRotationMatrix();

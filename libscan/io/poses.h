@@ -20,8 +20,9 @@ struct NamedPose {
 // matrices (.txt, .xf), Stanford .conf (`bmesh FILE tx ty tz qx qy qz qw`, whose quaternion is the
 // inverse rotation: x_world = R(q)^T x + t; `camera` lines are no scans), or alignment.json as
 // written by align. Redwood's .log (three whole numbers before each matrix) is read as well; #
-// begins a comment. Rotations further than 1e-3 from SO(3) are refused, nearer ones projected, and
-// those within 1e-12 kept to the bit. scan::Error (input) names file, line and word.
+// begins a comment. Matrices an entry of which is more than 1e-6 off a rotation, left-handed ones
+// and quaternions whose length is not 1 within 5e-4 are refused, nearer ones projected, and those
+// within 1e-12 kept to the bit. scan::Error (input) names file, line and word.
 std::vector<NamedPose> read_poses(const std::filesystem::path& path);
 
 // The pose of a 4x4 matrix, with the same rule for its rotation; `place` is how errors call it.

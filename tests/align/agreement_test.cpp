@@ -22,19 +22,19 @@ PointCloud sheet(std::uint64_t seed, double noise_m) {
                                 0.5 * std::sin(6 * x) * std::sin(5 * y), 1);
     cloud.points.emplace_back(x, y, z);
     cloud.normals.push_back(slope.normalized());
-    if (noise_m > 0) cloud.sigma_m.push_back(noise_m);
   }
   return cloud;
 }
 
 double agreeing_when_lifted(double lift_m, double noise_m) {
-  const PointCloud a = sheet(1, noise_m), b = sheet(2, noise_m);
-  const KdTree a_search(a.points), b_search(b.points);
-  const std::vector<PosedScan> others = {
-      {&b, &b_search, Pose(Eigen::Translation3d(0, 0, lift_m)), tolerated_residual_m(b, b_search)}};
-  return agreement({&a, &a_search, Pose::Identity(), tolerated_residual_m(a, a_search)}, others,
-                   0.1)
-      .agreeing;
+  const PreparedCloud a = prepare(sheet(1, noise_m)), b = prepare(sheet(2, noise_m));
+  const auto posed = [&](const PreparedCloud& cloud, double z_m) {
+    return PosedScan{&cloud,
+                     Pose(Eigen::Translation3d(cloud.origin + z_m * Eigen::Vector3d::UnitZ())),
+                     tolerated_residual_m(cloud, noise_m)};
+  };
+  const PosedScan other = posed(b, lift_m);
+  return agreement(posed(a, 0), {&other, 1}, 0.1).agreeing;
 }
 
 // Two samples of one surface with equal noise differ by sqrt(2) sigma; three sigma of one are 2.1

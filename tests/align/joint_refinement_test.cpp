@@ -6,50 +6,162 @@
 
 #include <Eigen/LU>
 
+#include "libscan/align/joint_system.h"
 #include "libscan/core/random.h"
 
 namespace scan {
 namespace {
 
-ScanPairForm random_form(std::size_t source, std::size_t target, RandomStream& random) {
-  ScanPairForm form{.source = source, .target = target, .pairs = 10};
+using Eigen::Vector3d;
+
+Vector6 random_row(RandomStream& random) {
+  Vector6 row;
+  for (int i = 0; i < 6; ++i) row[i] = random.normal();
+  return row;
+}
+
+JointForm random_form(std::size_t source, std::size_t target, RandomStream& random) {
+  JointForm form{.source = source, .target = target, .pairs = 10};
   for (int k = 0; k < 10; ++k) {
-    Vector6 row;
-    for (int i = 0; i < 6; ++i) row[i] = random.normal();
+    const Vector6 row = random_row(random);
+    const double residual = random.normal();
     form.a += row * row.transpose();
-    form.b -= row * random.normal();
+    form.b -= row * residual;
   }
+  form.apparent = form.a;
   return form;
 }
 
-// The dense normal equations of the same problem: for each form, x = x_source - x_target.
-TEST(SolveForms, AgreesWithTheDenseNormalEquations) {
+JointFrame frame_of(std::size_t scans) {
+  JointFrame frame{.centres = std::vector<Vector3d>(scans, Vector3d::Zero()),
+                   .size_m = 1,
+                   .free = std::vector<bool>(scans, true)};
+  frame.free[0] = false;
+  return frame;
+}
+
+struct Ring {
+  std::vector<JointForm> forms;
+  Eigen::MatrixXd a;  // dense normal equations of scans 1 to 3
+  Eigen::VectorXd b;
+};
+
+Ring ring() {
   RandomStream random(1, 0, 0);
-  const std::vector<ScanPairForm> forms{random_form(0, 1, random), random_form(1, 2, random),
-                                        random_form(2, 3, random), random_form(3, 0, random)};
+  Ring ring;
+  for (std::size_t i = 0; i < 4; ++i) ring.forms.push_back(random_form(i, (i + 1) % 4, random));
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(24, 24);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(24);
-  for (const ScanPairForm& form : forms) {
+  for (const JointForm& form : ring.forms) {
     Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(6, 24);
     difference.middleCols<6>(6 * Eigen::Index(form.source)).setIdentity();
     difference.middleCols<6>(6 * Eigen::Index(form.target)) = -Matrix6::Identity();
     a += difference.transpose() * form.a * difference;
     b += difference.transpose() * form.b;
   }
-  const Eigen::VectorXd rest = a.bottomRightCorner<18, 18>().partialPivLu().solve(b.tail<18>());
-  const std::vector<Vector6> twists = solve_forms(forms, 4, {true, false, false, false});
-  EXPECT_EQ(twists[0], Vector6::Zero());
-  // Ceres damps by 1e-8 of the diagonal and stops at relative changes of 1e-14.
-  for (int i = 0; i < 3; ++i)
-    EXPECT_LT((twists[std::size_t(i) + 1] - rest.segment<6>(6 * i)).norm(), 1e-6);
+  ring.a = a.bottomRightCorner<18, 18>();
+  ring.b = b.tail<18>();
+  return ring;
 }
 
-TEST(SolveForms, MotionsThatNothingFixesStayZero) {
-  ScanPairForm form{.source = 0, .target = 1, .pairs = 10};
-  form.a(5, 5) = 3;
-  form.b[5] = 6;
-  const std::vector<Vector6> twists = solve_forms(std::vector{form}, 2, {false, true});
-  EXPECT_LT((twists[0] - 2 * Vector6::Unit(5)).norm(), 1e-6);
+// The damping of 1e-10 of the diagonal changes a solution by that times the condition, some 100.
+TEST(JointStep, AgreesWithTheDenseNormalEquations) {
+  const Ring r = ring();
+  const Eigen::VectorXd x = r.a.partialPivLu().solve(r.b);
+  const auto twists = joint_step(r.forms, frame_of(4), JointBasis(24, 0));
+  EXPECT_EQ(twists[0], Vector6::Zero());
+  for (int i = 0; i < 3; ++i)
+    EXPECT_LT((twists[std::size_t(i) + 1] - x.segment<6>(6 * i)).norm(), 1e-7);
+}
+
+// A form about another centre and in another unit means the same motion of the points.
+TEST(TwistToForm, CarriesPointsAsTheTwistItselfDoes) {
+  JointFrame frame = frame_of(1);
+  frame.centres[0] = {1, -2, 3};
+  frame.size_m = 0.7;
+  const JointForm form{.frame = {.centre = {4, 5, -6}, .size_m = 2.5}};
+  RandomStream random(2, 0, 0);
+  const Vector6 own = random_row(random);
+  const Vector6 carried = twist_to_form(frame, 0, form) * own;
+  const Vector3d x(7, 8, 9);
+  const Vector3d by_own = own.head<3>().cross(x - frame.centres[0]) + 0.7 * own.tail<3>();
+  const Vector3d by_form = carried.head<3>().cross(x - form.frame.centre) + 2.5 * carried.tail<3>();
+  EXPECT_LT((by_own - by_form).norm(), 1e-12);
+}
+
+// Lagrange's equations of the constrained minimum: A x + W l = b, W^T x = 0.
+TEST(JointStep, GivesNoPartAlongWhatIsWeak) {
+  const Ring r = ring();
+  JointBasis weak = JointBasis::Zero(24, 1);
+  weak(9, 0) = 0.6, weak(20, 0) = 0.8;
+  Eigen::MatrixXd saddle = Eigen::MatrixXd::Zero(19, 19);
+  saddle.topLeftCorner<18, 18>() = r.a;
+  saddle.topRightCorner<18, 1>() = weak.bottomRows<18>();
+  saddle.bottomLeftCorner<1, 18>() = weak.bottomRows<18>().transpose();
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(19);
+  right.head<18>() = r.b;
+  const Eigen::VectorXd x = saddle.partialPivLu().solve(right);
+  const auto twists = joint_step(r.forms, frame_of(4), weak);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_LT((twists[std::size_t(i) + 1] - x.segment<6>(6 * i)).norm(), 1e-7);
+}
+
+TEST(JointWeakMotions, AreNoneWhereTheDataFixAll) {
+  const Ring r = ring();
+  EXPECT_EQ(joint_weak_motions(r.forms, frame_of(4)).cols(), 0);
+}
+
+// Scans 2 and 3 hold each other, but what ties them to 0 and 1 leaves one motion to noise: they may
+// go along it together, and only they.
+TEST(JointWeakMotions, FindWhatAGroupOfScansMayDoTogether) {
+  RandomStream random(3, 0, 0);
+  std::vector<JointForm> forms = {random_form(1, 0, random), random_form(2, 3, random),
+                                  random_form(2, 1, random), random_form(3, 0, random)};
+  const Vector6 open = random_row(random).normalized();
+  const Matrix6 rest = Matrix6::Identity() - open * open.transpose();
+  for (const std::size_t k : {2u, 3u}) {
+    // A tenth more than noise.
+    forms[k].noise = 0.01 * open * open.transpose();
+    forms[k].apparent = rest * forms[k].apparent * rest + 1.1 * forms[k].noise;
+  }
+  const JointFrame frame = frame_of(4);
+  const JointBasis weak = joint_weak_motions(forms, frame);
+  ASSERT_EQ(weak.cols(), 1);
+  EXPECT_EQ(weak_motions_of(0, weak).cols(), 0);
+  EXPECT_EQ(weak_motions_of(1, weak).cols(), 0);
+  for (const std::size_t i : {2u, 3u}) {
+    const TwistBasis own = weak_motions_of(i, weak);
+    ASSERT_EQ(own.cols(), 1);
+    // The ties within the group, and of scan 1 to 0, give by 0.01 over some units of information.
+    EXPECT_GT(std::abs(own.col(0).dot(open)), 0.99);
+  }
+}
+
+// One scan against the anchor, pulls known: B^-1 M B^-1.
+TEST(JointCovariances, AreTheSandwichOfCurvatureAndScatter) {
+  RandomStream random(4, 0, 0);
+  const std::vector<JointForm> forms = {random_form(1, 0, random), random_form(0, 1, random)};
+  std::vector<JointDetail> details(2);
+  Matrix6 scatter = Matrix6::Zero();
+  for (std::int64_t place = 0; place < 20; ++place) {
+    const Vector6 there = random_row(random), back = random_row(random);
+    details[0].pulls.push_back({{place, 0, 0}, there});
+    details[1].pulls.push_back({{place, 0, 0}, back});
+    scatter += (there - back) * (there - back).transpose();  // scan 1 is the second's target
+  }
+  for (std::size_t k = 0; k < 2; ++k) details[k].curvature = forms[k].a;
+  const Matrix6 inverse = (forms[0].a + forms[1].a).inverse();
+  JointFrame frame = frame_of(2);
+  frame.size_m = 3;
+  std::vector<JointForm> scaled = forms;
+  for (JointForm& form : scaled) form.frame.size_m = 3;
+  const auto covariances = joint_covariances(scaled, details, frame, JointBasis(12, 0));
+  ASSERT_TRUE(covariances[1]);
+  Matrix6 units = Matrix6::Identity();
+  units.bottomRightCorner<3, 3>() *= 3;
+  const Matrix6 expected = units * inverse * scatter * inverse * units;
+  EXPECT_LT((*covariances[1] - expected).norm(), 1e-7 * expected.norm());
+  EXPECT_EQ(*covariances[0], Matrix6::Zero());
 }
 
 }  // namespace

@@ -10,21 +10,6 @@ namespace scan {
 namespace {
 
 // Central differences with h = 1e-6: off by h^2 |rho'''| / 6 + eps rho / h < 1e-9 for rho up to 1.
-TEST(TukeyLoss, WeightIsTheDerivativeOverTheResidual) {
-  const TukeyLoss loss{.limit_m = 2};
-  for (const double r : {-1.9, -0.5, 0.1, 1.0, 1.99, 2.5})
-    EXPECT_NEAR((loss.rho_m2(r + 1e-6) - loss.rho_m2(r - 1e-6)) / 2e-6 / r, loss.weight(r), 1e-8);
-}
-
-TEST(TukeyLoss, IsQuadraticNearZeroAndConstantBeyondTheLimit) {
-  const TukeyLoss loss{.limit_m = 2};
-  EXPECT_NEAR(loss.rho_m2(1e-4), 0.5e-8, 1e-15);
-  EXPECT_EQ(loss.weight(0), 1);
-  EXPECT_EQ(loss.weight(2), 0);
-  EXPECT_EQ(loss.rho_m2(3), loss.rho_m2(1e9));
-  EXPECT_DOUBLE_EQ(loss.rho_m2(3), 4.0 / 6);
-}
-
 TEST(WelschLoss, WeightAndCurvatureAreItsDerivatives) {
   const WelschLoss loss{.scale_m = 0.7};
   for (const double r : {-1.9, -0.5, 0.1, 1.0, 2.5}) {

@@ -51,13 +51,27 @@ TEST(JsonOutput, AlignmentIsWhatReadPosesReads) {
   twist << 1, 2, 3, 1.0 / 3, 5, 6;
   result.scans[1].world_from_scan = exp(twist);
   result.scans[1].stop = Stop::converged;
+  Vector6 variances;
+  variances << 1, 4, 9, 16, 25, 36;
+  result.scans[1].covariance = Matrix6(variances.asDiagonal());
+  result.edges.push_back({.source = 0, .target = 1});
   const std::vector<std::string> files = {"a.ply", "b.ply"};
   const ordered_json alignment = alignment_json(files, result, {});
   EXPECT_EQ(keys_of(alignment["scans"][0]),
             (std::vector<std::string>{"file", "world_from_scan", "stop", "iterations", "rms_m",
-                                      "inlier_fraction_of_source", "agreement", "weak_directions"}));
+                                      "inlier_fraction_of_source", "agreement", "weak_directions",
+                                      "sigma_rotation_rad", "sigma_translation_m", "covariance",
+                                      "covariance_centre_m"}));
+  EXPECT_TRUE(alignment["scans"][0]["covariance"].is_null());
+  EXPECT_DOUBLE_EQ(alignment["scans"][1]["sigma_rotation_rad"].get<double>(), std::sqrt(14.0));
+  EXPECT_DOUBLE_EQ(alignment["scans"][1]["sigma_translation_m"].get<double>(), std::sqrt(77.0));
+  EXPECT_EQ(alignment["scans"][1]["covariance"][5][5], 36);
+  EXPECT_EQ(keys_of(alignment["pairs"][0]),
+            (std::vector<std::string>{"source", "target", "accepted", "stop", "overlap",
+                                      "agreement", "rms_m"}));
+  EXPECT_EQ(alignment["pairs"][0]["target"], "b.ply");
   EXPECT_EQ(alignment["scans"][1]["stop"], "converged");
-  EXPECT_EQ(alignment["method"], "point-to-plane");
+  EXPECT_EQ(alignment["method"], "symmetric");
   EXPECT_EQ(alignment["search"], "kd-tree");
   EXPECT_EQ(json_text(alignment).find("seconds"), std::string::npos);
   write_json(folder / "alignment.json", alignment);

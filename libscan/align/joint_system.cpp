@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/align/joint_system.h"
+
+#include <map>
+
+namespace scan {
+namespace {
+
+void add_block(JointEntries& entries, Eigen::Index row, Eigen::Index column, const Matrix6& block) {
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      entries.push_back({static_cast<int>(row + i), static_cast<int>(column + j), block(i, j)});
+}
+
+}  // namespace
+
+Matrix6 twist_to_form(const JointFrame& frame, std::size_t scan, const JointForm& form) {
+  Matrix6 carry = Matrix6::Identity();
+  carry.bottomLeftCorner<3, 3>() =
+      -cross_matrix(form.frame.centre - frame.centres[scan]) / form.frame.size_m;
+  carry.bottomRightCorner<3, 3>() *= frame.size_m / form.frame.size_m;
+  return carry;
+}
+
+JointSystem::JointSystem(std::span<const JointForm> forms, const JointFrame& frame)
+    : forms_(forms), frame_(frame), row_(frame.centres.size(), -1) {
+  std::vector<bool> used(frame.centres.size(), false);
+  for (const JointForm& form : forms) used[form.source] = used[form.target] = true;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i] || !frame.free[i]) continue;
+    row_[i] = rows_;
+    rows_ += 6;
+  }
+}
+
+JointEntries JointSystem::assemble(std::span<const Matrix6> matrices) const {
+  JointEntries entries;
+  for (std::size_t k = 0; k < forms_.size(); ++k) {
+    const JointForm& form = forms_[k];
+    for (const std::size_t i : {form.source, form.target})
+      for (const std::size_t j : {form.source, form.target}) {
+        if (!has(i) || !has(j)) continue;
+        const double sign = i == j ? 1 : -1;
+        add_block(entries, row(i), row(j),
+                  sign * twist_to_form(frame_, i, form).transpose() * matrices[k] *
+                      twist_to_form(frame_, j, form));
+      }
+  }
+  return entries;
+}
+
+JointEntries JointSystem::sum_of(std::span<const JointDetail> details) const {
+  std::vector<Matrix6> matrices;
+  for (const JointDetail& detail : details) matrices.push_back(detail.curvature);
+  return assemble(matrices);
+}
+
+Eigen::VectorXd JointSystem::right_side() const {
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(rows_);
+  for (const JointForm& form : forms_) {
+    if (has(form.source))
+      b.segment<6>(row(form.source)) +=
+          twist_to_form(frame_, form.source, form).transpose() * form.b;
+    if (has(form.target))
+      b.segment<6>(row(form.target)) -=
+          twist_to_form(frame_, form.target, form).transpose() * form.b;
+  }
+  return b;
+}
+
+JointEntries JointSystem::scatter(std::span<const JointDetail> details) const {
+  // Per place: the pull on each scan that is seen there.
+  std::map<std::array<std::int64_t, 3>, std::map<std::size_t, Vector6>> places;
+  for (std::size_t k = 0; k < forms_.size(); ++k) {
+    const JointForm& form = forms_[k];
+    for (const PatchPull& pull : details[k].pulls)
+      for (const std::size_t scan : {form.source, form.target}) {
+        if (!has(scan)) continue;
+        const double sign = scan == form.source ? 1 : -1;
+        const Vector6 part = sign * twist_to_form(frame_, scan, form).transpose() * pull.gradient;
+        places[pull.place].try_emplace(scan, Vector6::Zero()).first->second += part;
+      }
+  }
+  JointEntries entries;
+  for (const auto& [place, pulls] : places)
+    for (const auto& [i, a] : pulls)
+      for (const auto& [j, b] : pulls) add_block(entries, row(i), row(j), a * b.transpose());
+  return entries;
+}
+
+std::vector<Vector6> JointSystem::twists(const Eigen::VectorXd& x) const {
+  std::vector<Vector6> all(row_.size(), Vector6::Zero());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (has(i)) all[i] = x.segment<6>(row(i));
+  return all;
+}
+
+JointBasis JointSystem::expanded(const Eigen::MatrixXd& columns) const {
+  JointBasis all = JointBasis::Zero(6 * Eigen::Index(row_.size()), columns.cols());
+  for (std::size_t i = 0; i < row_.size(); ++i)
+    if (has(i)) all.middleRows<6>(6 * Eigen::Index(i)) = columns.middleRows<6>(row(i));
+  return all;
+}
+
+Eigen::MatrixXd JointSystem::reduced(const JointBasis& columns) const {
+  Eigen::MatrixXd part(rows_, columns.cols());
+  for (std::size_t i = 0; i < row_.size(); ++i)
+    if (has(i)) part.middleRows<6>(row(i)) = columns.middleRows<6>(6 * Eigen::Index(i));
+  return part;
+}
+
+}  // namespace scan

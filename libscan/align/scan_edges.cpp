@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/align/scan_edges.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "libscan/align/agreement.h"
+#include "libscan/core/parallel.h"
+
+namespace scan {
+namespace {
+
+// Residuals of noise-free scans say nothing; coordinates are rounded to this share of the size.
+constexpr double rounding = 1e-12;
+// How far beyond its tolerance, in spacings, a point may lie and still be expected on the other.
+constexpr double expected_in_spacings = 4;
+
+// With less, a pair that stands alone is tried from other starts as well.
+constexpr double good_agreement = 0.8;
+
+bool has_answer(const ScanEdge& edge) {
+  return edge.stop == Stop::converged || edge.stop == Stop::degenerate ||
+         edge.stop == Stop::iteration_limit;
+}
+
+double agreement_of(const PreparedScans& scans, const ScanEdge& edge) {
+  const PreparedCloud& source = scans.clouds[edge.source];
+  const PreparedCloud& target = scans.clouds[edge.target];
+  const PosedScan other{&target, Pose::Identity(), scans.tolerance_m[edge.target]};
+  const PosedScan posed{&source, local_pose(edge.target_from_source, source, target),
+                        scans.tolerance_m[edge.source]};
+  const double reach_m = expected_in_spacings * std::max(source.spacing_m, target.spacing_m);
+  return agreement(posed, {&other, 1}, reach_m).agreeing;
+}
+
+ScanEdge align_from(const PreparedScans& scans, const EdgeTask& task, const Pose& start,
+                    const IcpOptions& options) {
+  ScanEdge edge{.source = task.source,
+                .target = task.target,
+                .target_from_source_guess = task.target_from_source_guess};
+  const IcpResult result =
+      icp(scans.clouds[task.source], scans.clouds[task.target], start, options);
+  edge.target_from_source = result.target_from_source;
+  edge.stop = result.stop;
+  edge.overlap = result.inlier_fraction_of_source;
+  edge.rms_m = result.rms_m;
+  edge.centre = result.centre;
+  edge.information = result.information;
+  if (has_answer(edge)) edge.agreement = agreement_of(scans, edge);
+  return edge;
+}
+
+double score(const ScanEdge& edge) {
+  return edge.overlap * edge.agreement;
+}
+
+// The guess turned about the middle of the source, and shifted, both ways along each axis; a turn
+// moves the ends of the cloud by about as much as a shift.
+std::vector<Pose> starts_around(const Pose& guess, const PreparedCloud& source, double shift_m) {
+  const Eigen::Vector3d centre = guess * source.origin;
+  std::vector<Pose> starts;
+  for (int i = 0; i < 6; ++i)
+    for (const double sign : {-1.0, 1.0}) {
+      Vector6 twist = Vector6::Zero();
+      twist[i] = sign * (i < 3 ? shift_m / source.radius_m : shift_m);
+      starts.push_back(Eigen::Translation3d(centre) * exp(twist) * Eigen::Translation3d(-centre) *
+                       guess);
+    }
+  return starts;
+}
+
+// A pair that no loop can check is tried from around its guess, too, where that does not end well.
+ScanEdge align_pair(const PreparedScans& scans, const EdgeTask& task, bool alone,
+                    const IcpOptions& options) {
+  ScanEdge best = align_from(scans, task, task.target_from_source_guess, options);
+  if (!alone || best.agreement >= good_agreement) return best;
+  const PreparedCloud& source = scans.clouds[task.source];
+  const double step_m = std::max(source.spacing_m, scans.clouds[task.target].spacing_m);
+  for (const double spacings : {1.0, 2.0, 4.0})
+    for (const Pose& start :
+         starts_around(task.target_from_source_guess, source, spacings * step_m)) {
+      const ScanEdge other = align_from(scans, task, start, options);
+      if (score(other) > score(best)) best = other;
+    }
+  return best;
+}
+
+// An edge that was aligned before from the same guess, to the bit.
+const ScanEdge* known_edge(const EdgeTask& task, const std::vector<ScanEdge>& known) {
+  for (const ScanEdge& edge : known)
+    if (edge.source == task.source && edge.target == task.target &&
+        edge.target_from_source_guess.matrix() == task.target_from_source_guess.matrix())
+      return &edge;
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<ScanEdge> align_pairs(const PreparedScans& scans, std::span<const EdgeTask> tasks,
+                                  const MultiviewOptions& options, const Progress& progress) {
+  std::vector<ScanEdge> edges(tasks.size());
+  std::mutex mutex;
+  std::size_t done = 0;
+  parallel_for(
+      tasks.size(),
+      [&](std::size_t k) {
+        const ScanEdge* known = known_edge(tasks[k], options.known_edges);
+        edges[k] = known ? *known : align_pair(scans, tasks[k], tasks.size() == 1, options.icp);
+        const std::lock_guard lock(mutex);
+        if (options.on_edge && !known) options.on_edge(edges[k]);
+        if (progress)
+          progress("pairs", static_cast<double>(++done) / static_cast<double>(tasks.size()));
+      },
+      1);
+  return edges;
+}
+
+PoseEdge graph_edge(const PreparedScans& scans, const ScanEdge& edge) {
+  const PreparedCloud& source = scans.clouds[edge.source];
+  const PreparedCloud& target = scans.clouds[edge.target];
+  const double size_m = std::min(source.radius_m, target.radius_m);
+  const double off_m = std::max(edge.rms_m, rounding * (size_m + target.origin.norm()));
+  Vector6 floor;  // inverses of the variances, about the overlap's centre
+  floor << Eigen::Vector3d::Constant(size_m * size_m / (off_m * off_m)),
+      Eigen::Vector3d::Constant(1 / (off_m * off_m));
+  // (I^-1 + F^-1)^-1 = I (I + F)^-1 F, which holds for a singular I, too.
+  const Matrix6 limit = floor.asDiagonal();
+  const Matrix6 less = edge.information * (edge.information + limit).ldlt().solve(limit);
+  Matrix6 to_centre = Matrix6::Identity();
+  to_centre.bottomLeftCorner<3, 3>() = -cross_matrix(edge.centre - target.origin);
+  const Matrix6 about_origin = to_centre.transpose() * less * to_centre;
+  return {edge.source, edge.target, local_pose(edge.target_from_source, source, target),
+          0.5 * (about_origin + about_origin.transpose())};
+}
+
+SolvedPoses solve_edges(const PreparedScans& scans, std::span<const Pose> starts,
+                        std::vector<ScanEdge>& edges, std::size_t anchor) {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    edges[k].accepted = false;
+    if (has_answer(edges[k])) order.push_back(k);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return edges[a].overlap * edges[a].agreement > edges[b].overlap * edges[b].agreement;
+  });
+  std::vector<PoseEdge> graph;
+  for (const std::size_t k : order) graph.push_back(graph_edge(scans, edges[k]));
+  PoseGraph solved = solve_pose_graph(starts, graph, anchor);
+  for (std::size_t k = 0; k < order.size(); ++k) edges[order[k]].accepted = solved.accepted[k];
+  return {std::move(solved.world_from_scan), std::move(solved.tied)};
+}
+
+}  // namespace scan

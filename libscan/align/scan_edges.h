@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of many scans, each aligned by itself, and the poses that most of them agree on.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "libscan/align/multiview.h"
+#include "libscan/align/pose_graph.h"
+#include "libscan/align/prepared_cloud.h"
+
+namespace scan {
+
+// The scans made ready, and how far residuals may be their own doing (see agreement.h).
+struct PreparedScans {
+  std::vector<PreparedCloud> clouds;
+  std::vector<double> tolerance_m;
+};
+
+// A pair to align and where to start, between the clouds' own frames.
+struct EdgeTask {
+  std::size_t source = 0, target = 0;
+  Pose target_from_source_guess = Pose::Identity();
+};
+
+// One edge per task, in their order. An interruption by the progress leaves the edges that were
+// finished with options.on_edge.
+std::vector<ScanEdge> align_pairs(const PreparedScans& scans, std::span<const EdgeTask> tasks,
+                                  const MultiviewOptions& options, const Progress& progress);
+
+// Solves the graph of the edges that have an answer, the surest first, and marks which of them were
+// accepted. Poses are world_from_local, of the prepared points; scans that are not tied keep
+// theirs.
+struct SolvedPoses {
+  std::vector<Pose> world_from_local;
+  std::vector<bool> tied;
+};
+SolvedPoses solve_edges(const PreparedScans& scans, std::span<const Pose> starts,
+                        std::vector<ScanEdge>& edges, std::size_t anchor);
+
+// The information of an edge for the graph, about the target's prepared origin: that of the icp,
+// less what a smooth distortion by the device may add. Of such a distortion a rigid motion absorbs
+// about as much as it leaves in the residuals: sigma is their rms for the shift, and for the turn
+// their rms over the size of the overlap.
+PoseEdge graph_edge(const PreparedScans& scans, const ScanEdge& edge);
+
+}  // namespace scan
