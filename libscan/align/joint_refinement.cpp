@@ -19,7 +19,7 @@ namespace {
 
 // What n planes draw of the noise is off by sqrt(2 / n): from 200 planes on this is five sigma
 // above noise alone.
-constexpr double noise_multiple = 1.2;
+constexpr double noise_multiple = 1.5;
 constexpr double rounding_share = 1e-10;  // as in observability.cpp
 constexpr int subspace_rounds = 30;
 // More weak motions than that are looked for scan by scan, the others held.

@@ -25,8 +25,8 @@ struct JointFrame {
 using JointBasis = Eigen::MatrixXd;
 
 // Orthonormal basis of the motions of all scans together that noise alone may feign to be fixed:
-// those with v^T A v < 1.2 v^T N v (observability.h), A and N summed over the forms. Sylvester's
-// law of inertia counts them by the pivots of A - 1.2 N; subspace iteration
+// those with v^T A v < 1.5 v^T N v (observability.h), A and N summed over the forms. Sylvester's
+// law of inertia counts them by the pivots of A - 1.5 N; subspace iteration
 // finds them; of more than 48 only what single scans may do, the others held, is found.
 JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame);
 

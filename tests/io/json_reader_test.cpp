@@ -62,8 +62,8 @@ TEST(JsonReader, NamesPlaceAndValueOfWrongTypes) {
 
 // A key that reads nearly like the missing one, with or without its unit.
 TEST(JsonReader, NamesWhatWasMeantByAMistypedKey) {
-  const nlohmann::json json = {{"focal_pix", 3}, {"radus_mm", 2}, {"kind", 1}};
-  JsonReader reader(json, "a.json");
+  const json mistyped = {{"focal_pix", 3}, {"radus_mm", 2}, {"kind", 1}};
+  JsonReader reader(mistyped, "a.json");
   EXPECT_EQ(hint_of([&] { reader.number("focal_px"); }), "did you mean 'focal_px' by 'focal_pix'?");
   EXPECT_EQ(hint_of([&] { reader.length_m("radius"); }), "did you mean 'radius_mm' by 'radus_mm'?");
   EXPECT_EQ(hint_of([&] { reader.number("weight"); }), "");

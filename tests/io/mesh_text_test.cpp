@@ -22,19 +22,19 @@ TEST(Obj, ReadsPolygonsBackwardIndicesAndContinuedLines) {
 
 // OBJ counts v upwards, TextureCorners downwards; fans share their first corner.
 TEST(Obj, KeepsTextureCoordinatesIfAllFacesHaveThem) {
-  const std::string obj =
+  const std::string quad =
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0.25\nvt 1 0.25\nvt 1 1\nvt 0 1 0\n"
       "f 1/1 2/2/7 3/3 4/-1\n";
-  const TexturedMesh textured = parse_obj(obj, "a.obj");
+  const TexturedMesh textured = parse_obj(quad, "a.obj");
   ASSERT_EQ(textured.corners.size(), 2u);
   EXPECT_EQ(textured.corners[0][0], Eigen::Vector2d(0, 0.75));
   EXPECT_EQ(textured.corners[0][2], Eigen::Vector2d(1, 0));
   EXPECT_EQ(textured.corners[1][0], Eigen::Vector2d(0, 0.75));
   EXPECT_EQ(textured.corners[1][2], Eigen::Vector2d(0, 0));
-  EXPECT_TRUE(parse_obj(obj + "f 1//1 2//1 3//1\n", "a.obj").corners.empty());
+  EXPECT_TRUE(parse_obj(quad + "f 1//1 2//1 3//1\n", "a.obj").corners.empty());
   EXPECT_TRUE(parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", "a.obj").corners.empty());
   EXPECT_NE(error_of([&] {
-              parse_obj(obj + "f 1/9 2/1 3/1\n", "a.obj");
+              parse_obj(quad + "f 1/9 2/1 3/1\n", "a.obj");
             }).find("line 10: texture coordinate 9, there are 4"),
             std::string::npos);
 }
