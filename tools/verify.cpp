@@ -34,8 +34,9 @@ bool is_disparity(const std::string& path) {
   return std::filesystem::path(path).extension() == ".pfm";
 }
 
-// The poses of both files by name, or by order when the names do not match.
-std::pair<std::vector<Pose>, std::vector<Pose>> matched_poses(const Arguments& arguments) {
+// The poses of both files by name, or by order, with a warning, when the names do not match.
+std::pair<std::vector<Pose>, std::vector<Pose>> matched_poses(const Arguments& arguments,
+                                                              Console& console) {
   const auto estimated = read_poses(arguments.poses), truth = read_poses(arguments.true_poses);
   const auto stem = [](const std::string& name) {
     return std::filesystem::path(name).stem().string();
@@ -52,6 +53,8 @@ std::pair<std::vector<Pose>, std::vector<Pose>> matched_poses(const Arguments& a
     throw Error(Trouble::input, arguments.true_poses + ": has " + std::to_string(truth.size()) +
                                     " poses for " + std::to_string(estimated.size()) + " in " +
                                     arguments.poses + ", and the names do not match");
+  console.warn(arguments.true_poses + ": its names are not those of " + arguments.poses +
+               "; taken in their order (alignment.json has the scans' names)");
   a.clear(), b.clear();
   for (std::size_t i = 0; i < truth.size(); ++i) {
     a.push_back(estimated[i].pose);
@@ -62,8 +65,9 @@ std::pair<std::vector<Pose>, std::vector<Pose>> matched_poses(const Arguments& a
 
 // Pose errors, felt at the corners of the measured surface's box as each scanner saw it.
 std::vector<Measurement> measure_poses(const Arguments& arguments,
-                                       std::span<const Eigen::Vector3d> points_in_world) {
-  const auto [estimated, truth] = matched_poses(arguments);
+                                       std::span<const Eigen::Vector3d> points_in_world,
+                                       Console& console) {
+  const auto [estimated, truth] = matched_poses(arguments, console);
   const Bounds box = bounds_of(points_in_world);
   std::vector<std::vector<Eigen::Vector3d>> felt;
   for (const Pose& world_from_scanner : truth) {
@@ -88,7 +92,7 @@ std::vector<Measurement> measure_disparity(const Arguments& arguments) {
   return measurements;
 }
 
-std::vector<Measurement> measure_files(const Arguments& arguments) {
+std::vector<Measurement> measure_files(const Arguments& arguments, Console& console) {
   if (is_disparity(arguments.measured)) return measure_disparity(arguments);
   const TrueSurface truth = read_true_surface(arguments.truth);
   const SurfaceErrorOptions options{.f_score_threshold_m = arguments.threshold_m};
@@ -106,7 +110,7 @@ std::vector<Measurement> measure_files(const Arguments& arguments) {
     points = scan.cloud.points;
   }
   if (!arguments.poses.empty())
-    for (Measurement& measurement : measure_poses(arguments, points))
+    for (Measurement& measurement : measure_poses(arguments, points, console))
       measurements.push_back(std::move(measurement));
   return measurements;
 }
@@ -123,7 +127,7 @@ int verify(const Arguments& arguments, Console& console) {
       throw Error(Trouble::usage, "--poses and --true-poses go together");
     const auto limits =
         arguments.limits.empty() ? std::vector<Limit>{} : read_limits(arguments.limits);
-    verdict = judge(measure_files(arguments), limits);
+    verdict = judge(measure_files(arguments, console), limits);
   }
   console.time("verify", watch.seconds());
   const auto json = verdict_json(verdict);
