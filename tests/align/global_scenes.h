@@ -7,16 +7,6 @@
 
 namespace scan::test {
 
-// A lump without symmetry: a unit sphere whose radius varies with the direction.
-inline PointCloud lump(std::size_t count, std::uint64_t seed) {
-  PointCloud cloud = sphere(count, seed);
-  for (Vector3d& x : cloud.points)
-    x *= 1 + 0.25 * std::sin(3 * x.x() + 1) * std::cos(2 * x.y()) + 0.2 * x.z() * x.x() +
-         0.1 * std::sin(5 * x.z()) * std::cos(6 * x.x());
-  estimate_normals(cloud, [](const Vector3d& x) { return x; });
-  return cloud;
-}
-
 // The points whose normals face `direction` by more than `least` (cosine).
 inline PointCloud facing(const PointCloud& cloud, const Vector3d& direction, double least) {
   std::vector<std::uint32_t> seen;
