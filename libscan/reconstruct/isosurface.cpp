@@ -14,17 +14,24 @@ namespace {
 
 constexpr double snap_guard = 5e-4;
 
-struct CrossedCell {
-  FieldCell cell;
-  std::array<double, 8> corners;
-  std::uint32_t first_vertex = 0;  // of its own edges (those at its lowest corner), then centres
-  CellPolygons polygons;
-};
-
 using CellPlace = std::array<std::int32_t, 3>;
 
-CellPlace sort_key(const FieldCell& cell) {
-  return {cell.place[2], cell.place[1], cell.place[0]};
+// What a crossed cell leaves behind: there may be millions.
+struct CrossedCell {
+  CellPlace place;
+  std::uint32_t first_vertex = 0;  // of the edges at its lowest corner, then of its centres
+  std::uint32_t first_centre = 0;
+  CellPolygons polygons;
+  std::array<double, 3> crossing;  // parameter along x, y, z from the lowest corner; -1: none
+};
+
+struct CrossedCells {
+  std::vector<CrossedCell> cells;
+  std::vector<Eigen::Vector3d> centres;  // in the cell
+};
+
+CellPlace sort_key(const CellPlace& place) {
+  return {place[2], place[1], place[0]};
 }
 
 // Value at a corner: the mean of its eight functions' coefficients, summed in the functions' order.
@@ -60,6 +67,71 @@ bool may_hold_zero(const FieldCell& cell) {
   return false;
 }
 
+// Root of the parabola with spline coefficients q along a cell, where its ends differ in sign.
+double parabola_root(const std::array<double, 3>& q) {
+  const double start = (q[0] + q[1]) / 2, slope = q[1] - q[0], bend = (q[0] - 2 * q[1] + q[2]) / 2;
+  const double end = (q[1] + q[2]) / 2;
+  if ((start < 0) == (end < 0)) return start < end ? 0 : 1;  // an end on the wall: that is outside
+  // start + slope t + bend t^2 = 0 without cancellation; the one root between the ends.
+  const double root = std::sqrt(std::max(0.0, slope * slope - 4 * bend * start));
+  const double sum = -(slope + std::copysign(root, slope)) / 2;
+  const double first = sum / bend, second = start / sum;
+  return second >= 0 && second <= 1 ? second : first;
+}
+
+// Where the function vanishes along an edge of the cell, as a share of the edge.
+double edge_parameter(const FieldCell& cell, int edge) {
+  constexpr int strides[3] = {1, 3, 9};
+  const int axis = edge / 4, corner = edge_start_corner(edge);
+  const int start = (corner & 1) + 3 * (corner >> 1 & 1) + 9 * (corner >> 2);
+  const int u = strides[(axis + 1) % 3], v = strides[(axis + 2) % 3];
+  std::array<double, 3> q;
+  for (int i = 0; i < 3; ++i) {
+    const double* at = cell.coefficients.data() + start + i * strides[axis];
+    q[i] = (at[0] + at[u] + at[v] + at[u + v]) / 4;
+  }
+  const double t = parabola_root(q);
+  return std::isfinite(t) ? std::clamp(t, snap_guard, 1 - snap_guard) : 0.5;
+}
+
+bool needs_centre(int loop_size) {
+  return loop_size > 5;
+}
+
+// The mean of a loop, moved along the gradient to the level set as long as it stays in the cell.
+Eigen::Vector3d loop_centre(const FieldCell& cell, const signed char* edges, int size) {
+  Eigen::Vector3d in_cell = Eigen::Vector3d::Zero();
+  for (int i = 0; i < size; ++i) {
+    const int corner = edge_start_corner(edges[i]);
+    in_cell += Eigen::Vector3d(corner & 1, corner >> 1 & 1, corner >> 2) +
+               edge_parameter(cell, edges[i]) * Eigen::Vector3d::Unit(edges[i] / 4);
+  }
+  in_cell /= size;
+  for (int step = 0; step < 5; ++step) {
+    const FieldValue f = evaluate(cell, in_cell);
+    const double slope2 = f.gradient.squaredNorm();
+    if (!(slope2 > 0)) break;
+    const Eigen::Vector3d moved = in_cell - f.value / slope2 * f.gradient * (1 << cell.depth);
+    if (moved.minCoeff() < snap_guard || moved.maxCoeff() > 1 - snap_guard) break;
+    in_cell = moved;
+  }
+  return in_cell;
+}
+
+void add_crossed(const FieldCell& cell, const std::array<double, 8>& corners, CrossedCells& out) {
+  CrossedCell crossed{.place = cell.place, .polygons = cell_polygons(corners), .crossing = {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool crosses = (corners[0] < 0) != (corners[1 << axis] < 0);
+    crossed.crossing[axis] = crosses ? edge_parameter(cell, 4 * axis) : -1;
+  }
+  crossed.first_centre = static_cast<std::uint32_t>(out.centres.size());
+  const signed char* edges = crossed.polygons.edges.data();
+  for (int loop = 0; loop < crossed.polygons.loops; edges += crossed.polygons.sizes[loop++])
+    if (needs_centre(crossed.polygons.sizes[loop]))
+      out.centres.push_back(loop_centre(cell, edges, crossed.polygons.sizes[loop]));
+  out.cells.push_back(crossed);
+}
+
 constexpr int task_depth = 4;  // cells of this depth are walked in parallel
 
 bool is_empty(const SplineField& field, const FieldCell& cell) {
@@ -76,12 +148,12 @@ void collect_tasks(const SplineField& field, const FieldCell& cell, int depth,
 }
 
 void collect_crossed(const SplineField& field, const FieldCell& cell, int depth,
-                     std::vector<CrossedCell>& crossed) {
+                     CrossedCells& crossed) {
   if (cell.depth == depth) {
     if (!may_hold_zero(cell)) return;
     const std::array<double, 8> values = corner_values(cell);
     const auto inside = std::count_if(values.begin(), values.end(), [](double v) { return v < 0; });
-    if (inside > 0 && inside < 8) crossed.push_back({cell, values, 0, cell_polygons(values)});
+    if (inside > 0 && inside < 8) add_crossed(cell, values, crossed);
     return;
   }
   if (is_empty(field, cell)) return;
@@ -89,33 +161,36 @@ void collect_crossed(const SplineField& field, const FieldCell& cell, int depth,
     collect_crossed(field, child_cell(field, cell, octant), depth, crossed);
 }
 
-std::vector<CrossedCell> crossed_cells(const SplineField& field, int depth) {
+CrossedCells crossed_cells(const SplineField& field, int depth) {
   std::vector<FieldCell> tasks;
   constexpr int side = 1 << coarsest_depth;
   for (int i = 0; i < side * side * side; ++i)
     collect_tasks(field, coarsest_cell(field, {i % side, i / side % side, i / side / side}),
                   std::min(depth, task_depth), tasks);
-  std::vector<std::vector<CrossedCell>> parts(tasks.size());
+  std::vector<CrossedCells> parts(tasks.size());
   parallel_for(
       tasks.size(), [&](std::size_t i) { collect_crossed(field, tasks[i], depth, parts[i]); }, 4);
-  std::vector<CrossedCell> cells;
-  for (auto& part : parts) {
-    cells.insert(cells.end(), part.begin(), part.end());
+  std::size_t count = 0;
+  for (const CrossedCells& part : parts) count += part.cells.size();
+  CrossedCells all;
+  all.cells.reserve(count);
+  for (CrossedCells& part : parts) {
+    for (CrossedCell& cell : part.cells) {
+      cell.first_centre += static_cast<std::uint32_t>(all.centres.size());
+      all.cells.push_back(cell);
+    }
+    all.centres.insert(all.centres.end(), part.centres.begin(), part.centres.end());
     part = {};
   }
-  std::sort(cells.begin(), cells.end(), [](const CrossedCell& a, const CrossedCell& b) {
-    return sort_key(a.cell) < sort_key(b.cell);
+  std::sort(all.cells.begin(), all.cells.end(), [](const CrossedCell& a, const CrossedCell& b) {
+    return sort_key(a.place) < sort_key(b.place);
   });
-  return cells;
+  return all;
 }
 
 // Edges at the lowest corner: along x, y, z they are edges 0, 4 and 8.
 bool owns_crossing(const CrossedCell& c, int axis) {
-  return (c.corners[0] < 0) != (c.corners[1 << axis] < 0);
-}
-
-bool needs_centre(int loop_size) {
-  return loop_size > 5;
+  return c.crossing[axis] >= 0;
 }
 
 void number_vertices(std::vector<CrossedCell>& cells, std::size_t& count) {
@@ -128,45 +203,21 @@ void number_vertices(std::vector<CrossedCell>& cells, std::size_t& count) {
   }
 }
 
-// Root of the parabola with spline coefficients q along a cell, where its ends differ in sign.
-double parabola_root(const std::array<double, 3>& q) {
-  const double start = (q[0] + q[1]) / 2, slope = q[1] - q[0], bend = (q[0] - 2 * q[1] + q[2]) / 2;
-  const double end = (q[1] + q[2]) / 2;
-  if ((start < 0) == (end < 0)) return start < end ? 0 : 1;  // an end on the wall: that is outside
-  // start + slope t + bend t^2 = 0 without cancellation; the one root between the ends.
-  const double root = std::sqrt(std::max(0.0, slope * slope - 4 * bend * start));
-  const double sum = -(slope + std::copysign(root, slope)) / 2;
-  const double first = sum / bend, second = start / sum;
-  return second >= 0 && second <= 1 ? second : first;
-}
-
-double edge_parameter(const CrossedCell& c, int axis) {
-  constexpr int strides[3] = {1, 3, 9};
-  const int u = strides[(axis + 1) % 3], v = strides[(axis + 2) % 3];
-  std::array<double, 3> q;
-  for (int i = 0; i < 3; ++i) {
-    const int first = i * strides[axis];
-    const double* at = c.cell.coefficients.data() + first;
-    q[i] = (at[0] + at[u] + at[v] + at[u + v]) / 4;
-  }
-  const double t = parabola_root(q);
-  return std::isfinite(t) ? std::clamp(t, snap_guard, 1 - snap_guard) : 0.5;
-}
-
 class Polygonizer {
  public:
   explicit Polygonizer(const SplineField& field, int depth)
-      : cell_size_(1.0 / (1 << depth)), cells_(crossed_cells(field, depth)) {
-    number_vertices(cells_, vertices_);
+      : cell_size_(1.0 / (1 << depth)), crossed_(crossed_cells(field, depth)) {
+    number_vertices(crossed_.cells, vertices_);
   }
 
   Mesh mesh() const {
+    const std::vector<CrossedCell>& cells = crossed_.cells;
     Mesh mesh;
     mesh.vertices.resize(vertices_);
-    parallel_for(cells_.size(), [&](std::size_t i) { place_edge_vertices(cells_[i], mesh); });
-    std::vector<std::vector<Triangle>> parts((cells_.size() + chunk - 1) / chunk);
-    parallel_chunks(cells_.size(), chunk, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) add_polygons(cells_[i], mesh, parts[begin / chunk]);
+    parallel_for(cells.size(), [&](std::size_t i) { place_vertices(cells[i], mesh); });
+    std::vector<std::vector<Triangle>> parts((cells.size() + chunk - 1) / chunk);
+    parallel_chunks(cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) add_polygons(cells[i], mesh, parts[begin / chunk]);
     });
     for (const auto& part : parts)
       mesh.triangles.insert(mesh.triangles.end(), part.begin(), part.end());
@@ -177,26 +228,28 @@ class Polygonizer {
   static constexpr std::size_t chunk = 512;
 
   Eigen::Vector3d in_cube(const CrossedCell& c, const Eigen::Vector3d& in_cell) const {
-    return (Eigen::Vector3d(c.cell.place[0], c.cell.place[1], c.cell.place[2]) + in_cell) *
-           cell_size_;
+    return (Eigen::Vector3d(c.place[0], c.place[1], c.place[2]) + in_cell) * cell_size_;
   }
 
-  void place_edge_vertices(const CrossedCell& c, Mesh& mesh) const {
-    std::uint32_t vertex = c.first_vertex;
+  void place_vertices(const CrossedCell& c, Mesh& mesh) const {
+    std::uint32_t vertex = c.first_vertex, centre = c.first_centre;
     for (int axis = 0; axis < 3; ++axis)
       if (owns_crossing(c, axis))
-        mesh.vertices[vertex++] = in_cube(c, edge_parameter(c, axis) * Eigen::Vector3d::Unit(axis));
+        mesh.vertices[vertex++] = in_cube(c, c.crossing[axis] * Eigen::Vector3d::Unit(axis));
+    for (int loop = 0; loop < c.polygons.loops; ++loop)
+      if (needs_centre(c.polygons.sizes[loop]))
+        mesh.vertices[vertex++] = in_cube(c, crossed_.centres[centre++]);
   }
 
   std::uint32_t vertex_of(const CrossedCell& c, int edge) const {
     const int corner = edge_start_corner(edge);
     const CrossedCell* owner = &c;
     if (corner != 0) {
-      FieldCell wanted;
-      for (int a = 0; a < 3; ++a) wanted.place[a] = c.cell.place[a] + (corner >> a & 1);
-      owner = &*std::lower_bound(cells_.begin(), cells_.end(), sort_key(wanted),
+      CellPlace wanted = c.place;
+      for (int a = 0; a < 3; ++a) wanted[a] += corner >> a & 1;
+      owner = &*std::lower_bound(crossed_.cells.begin(), crossed_.cells.end(), sort_key(wanted),
                                  [](const CrossedCell& other, const CellPlace& key) {
-                                   return sort_key(other.cell) < key;
+                                   return sort_key(other.place) < key;
                                  });
     }
     std::uint32_t vertex = owner->first_vertex;
@@ -204,26 +257,8 @@ class Polygonizer {
     return vertex;
   }
 
-  // The mean of a loop, moved along the gradient to the level set as long as it stays in the cell.
-  Eigen::Vector3d centre(const CrossedCell& c, const Mesh& mesh,
-                         const std::vector<std::uint32_t>& loop) const {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const std::uint32_t v : loop) mean += mesh.vertices[v];
-    mean /= static_cast<double>(loop.size());
-    Eigen::Vector3d in_cell =
-        mean / cell_size_ - Eigen::Vector3d(c.cell.place[0], c.cell.place[1], c.cell.place[2]);
-    for (int step = 0; step < 5; ++step) {
-      const FieldValue f = evaluate(c.cell, in_cell);
-      const double slope2 = f.gradient.squaredNorm();
-      if (!(slope2 > 0)) break;
-      const Eigen::Vector3d moved = in_cell - f.value / slope2 * f.gradient / cell_size_;
-      if (moved.minCoeff() < snap_guard || moved.maxCoeff() > 1 - snap_guard) break;
-      in_cell = moved;
-    }
-    return in_cube(c, in_cell);
-  }
-
-  void add_polygons(const CrossedCell& c, Mesh& mesh, std::vector<Triangle>& triangles) const {
+  void add_polygons(const CrossedCell& c, const Mesh& mesh,
+                    std::vector<Triangle>& triangles) const {
     std::uint32_t next_centre = c.first_vertex;
     for (int axis = 0; axis < 3; ++axis) next_centre += owns_crossing(c, axis);
     int at = 0;
@@ -233,7 +268,6 @@ class Polygonizer {
       for (int i = 0; i < c.polygons.sizes[k]; ++i)
         loop.push_back(vertex_of(c, c.polygons.edges[at++]));
       if (needs_centre(c.polygons.sizes[k])) {
-        mesh.vertices[next_centre] = centre(c, mesh, loop);
         for (std::size_t i = 0; i < loop.size(); ++i)
           triangles.push_back({loop[i], loop[(i + 1) % loop.size()], next_centre});
         ++next_centre;
@@ -266,7 +300,7 @@ class Polygonizer {
   }
 
   double cell_size_;
-  std::vector<CrossedCell> cells_;
+  CrossedCells crossed_;
   std::size_t vertices_ = 0;
 };
 

@@ -11,7 +11,7 @@
 namespace scan {
 namespace {
 
-constexpr int cube_width = block_width + 2;  // functions that act on the cells of a block
+constexpr int cube_width = block_cell_functions;
 constexpr int cube_size = cube_width * cube_width * cube_width;
 constexpr std::size_t buckets_per_task = 4;
 
@@ -164,7 +164,7 @@ void SampleTerm::add_product(const BlockLevel& level, const std::vector<double>&
                              std::vector<double>& sum) const {
   scatter(level, sum, [&](std::size_t bucket, double* buffer) {
     double cube[cube_size];
-    gather(level, u, bucket_block_[bucket], 0, cube_width, cube);
+    gather_cell_functions(level, u, bucket_block_[bucket], cube);
     for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
       const Placed& sample = placed_[i];
       const CellWeights w = weights_at(sample.in_cell);
@@ -207,7 +207,8 @@ void SampleTerm::add_diagonal(const BlockLevel& level, std::vector<double>& sum)
   });
 }
 
-void SampleTerm::add_matrix(const BlockLevel& level, Eigen::MatrixXd& matrix) const {
+void SampleTerm::add_matrix(const BlockLevel& level, std::span<const std::int32_t> row_of,
+                            Eigen::MatrixXd& matrix) const {
   for (std::size_t bucket = 0; bucket < bucket_block_.size(); ++bucket) {
     // One small matrix per cell (samples of a cell follow each other), then to its place.
     for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1];) {
@@ -218,7 +219,7 @@ void SampleTerm::add_matrix(const BlockLevel& level, Eigen::MatrixXd& matrix) co
                            placed_[i].weight * gradient_weight_ * cells_ * cells_, sum);
       const std::array<Eigen::Index, 27> at = cell_functions(level, bucket_block_[bucket], corner);
       for (int b = 0; b < 27; ++b)
-        for (int a = 0; a < 27; ++a) matrix(at[a], at[b]) += sum(a, b);
+        for (int a = 0; a < 27; ++a) matrix(row_of[at[a]], row_of[at[b]]) += sum(a, b);
     }
   }
 }
@@ -227,7 +228,7 @@ double SampleTerm::energy(const BlockLevel& level, const std::vector<double>& u)
   double total = 0;
   double cube[cube_size];
   for (std::size_t bucket = 0; bucket < bucket_block_.size(); ++bucket) {
-    gather(level, u, bucket_block_[bucket], 0, cube_width, cube);
+    gather_cell_functions(level, u, bucket_block_[bucket], cube);
     for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
       const Placed& sample = placed_[i];
       const ValueAndSlope f = evaluate(cube + sample.corner, weights_at(sample.in_cell));

@@ -27,8 +27,10 @@ class SampleTerm {
   void add_right_side(const BlockLevel& level, std::vector<double>& sum) const;
   // sum += diagonal of the matrix.
   void add_diagonal(const BlockLevel& level, std::vector<double>& sum) const;
-  // matrix += the term's matrix, dense; for a level whose blocks are all active.
-  void add_matrix(const BlockLevel& level, Eigen::MatrixXd& matrix) const;
+  // matrix += the term's matrix, dense; for a level whose blocks are all active. `row_of`: row of
+  // each of the level's functions that lies in the cube.
+  void add_matrix(const BlockLevel& level, std::span<const std::int32_t> row_of,
+                  Eigen::MatrixXd& matrix) const;
   // The term's own value for u.
   double energy(const BlockLevel& level, const std::vector<double>& u) const;
 

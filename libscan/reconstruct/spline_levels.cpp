@@ -9,11 +9,7 @@
 namespace scan {
 namespace {
 
-constexpr int halo = 2;                       // reach of the stencil, functions
-constexpr int wide = block_width + 2 * halo;  // side of what a block's stencil reads
-constexpr int plane = wide * wide;
-constexpr int lanes_z = block_width * plane;
-constexpr int lanes_y = block_width * block_width * wide;
+constexpr int halo = (bending_side - block_width) / 2;
 
 // The finer functions 2i and 2i+1 from the coarse ones i and i+1.
 constexpr double near_weight = refinement_mask[1], far_weight = refinement_mask[0];
@@ -64,77 +60,53 @@ void coarsen_cube(const double* fine, double* coarse) {
         coarse[i + 4 * line] += refinement_mask[tap] * y[2 * i + tap + fine_wide * line];
 }
 
-// Copies from the blocks of a table of 27 into a cube that starts `low` functions before the middle
-// block. Returns whether any block is there.
+// The part of a cube's axis (`width` functions, the first is `low` before the middle block) that
+// the block at offset d covers.
+template <int low, int width>
+struct Overlap {
+  int first, end;  // in the cube
+  explicit constexpr Overlap(int d)
+      : first(std::max(0, block_width * d + low)),
+        end(std::min(width, block_width * (d + 1) + low)) {}
+};
+
+// Copies what the block at offset (dx, dy, dz) has of a cube.
+template <int low, int width, int dx>
+void copy_part(const double* block, int dy, int dz, double* cube) {
+  using Part = Overlap<low, width>;
+  constexpr Part x(dx);
+  const Part y(dy), z(dz);
+  if constexpr (x.end > x.first)
+    for (int k = z.first; k < z.end; ++k)
+      for (int i = y.first; i < y.end; ++i)
+        std::copy_n(block + slot_in_block(x.first - block_width * dx - low,
+                                          i - block_width * dy - low, k - block_width * dz - low),
+                    x.end - x.first, cube + x.first + width * (i + width * k));
+}
+
+// Copies from the blocks of a table of 27 into a cube. Returns whether any block is there.
+template <int low, int width>
 bool gather_table(const std::array<std::int32_t, 27>& table, const std::vector<double>& values,
-                  int low, int width, double* cube) {
+                  double* cube) {
+  const std::size_t blocks = values.size() / block_size;
   bool any = false;
-  const int size = width * width * width;
-  std::fill(cube, cube + size, 0.0);
-  for (int dz = -1; dz <= 1; ++dz)
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const std::int32_t block = table[neighbour_slot(dx, dy, dz)];
-        if (block < 0 || (block + std::size_t{1}) * block_size > values.size()) continue;
-        const double* from = values.data() + static_cast<std::size_t>(block) * block_size;
-        const int ox = 4 * dx + low, oy = 4 * dy + low, oz = 4 * dz + low;
-        const int x0 = std::max(0, -ox), x1 = std::min(4, width - ox);
-        any = any || x1 > x0;
-        for (int z = std::max(0, -oz); z < std::min(4, width - oz); ++z)
-          for (int y = std::max(0, -oy); y < std::min(4, width - oy); ++y)
-            for (int x = x0; x < x1; ++x)
-              cube[x + ox + width * (y + oy + width * (z + oz))] = from[slot_in_block(x, y, z)];
-      }
+  const auto block_at = [&](int dx, int dy, int dz) -> const double* {
+    const std::int32_t block = table[neighbour_slot(dx, dy, dz)];
+    if (block < 0 || static_cast<std::size_t>(block) >= blocks) return nullptr;
+    any = true;
+    return values.data() + static_cast<std::size_t>(block) * block_size;
+  };
+  std::fill_n(cube, width * width * width, 0.0);
+  constexpr int from = low > 0 ? -1 : 0;
+  for (int dz = from; dz <= 1; ++dz)
+    for (int dy = from; dy <= 1; ++dy) {
+      if constexpr (from < 0)
+        if (const double* block = block_at(-1, dy, dz))
+          copy_part<low, width, -1>(block, dy, dz, cube);
+      if (const double* block = block_at(0, dy, dz)) copy_part<low, width, 0>(block, dy, dz, cube);
+      if (const double* block = block_at(1, dy, dz)) copy_part<low, width, 1>(block, dy, dz, cube);
+    }
   return any;
-}
-
-// Along z: mass, stiffness and bending sums of the 8 x 8 columns.
-void sum_along_z(const double* cube, const StencilRow* rows, double (&out)[3][lanes_z]) {
-  for (int z = 0; z < block_width; ++z) {
-    const int lane = z * plane;
-    double* m = out[0] + lane;
-    double* k = out[1] + lane;
-    double* b = out[2] + lane;
-    std::fill(m, m + plane, 0.0);
-    std::fill(k, k + plane, 0.0);
-    std::fill(b, b + plane, 0.0);
-    for (int tap = 0; tap < 5; ++tap) {
-      const double wm = rows[z].mass[tap], wk = rows[z].stiffness[tap], wb = rows[z].bending[tap];
-      const int lane_read = (z + tap) * plane;
-      const double* from = cube + lane_read;
-      for (int i = 0; i < plane; ++i) {
-        m[i] += wm * from[i];
-        k[i] += wk * from[i];
-        b[i] += wb * from[i];
-      }
-    }
-  }
-}
-
-// Along y: what the mass, stiffness and bending along x are applied to.
-void sum_along_y(const double (&in)[3][lanes_z], const StencilRow* rows,
-                 double (&out)[3][lanes_y]) {
-  for (int z = 0; z < block_width; ++z)
-    for (int y = 0; y < block_width; ++y) {
-      const int lane = (z * block_width + y) * wide;
-      double* to_mass = out[0] + lane;
-      double* to_stiffness = out[1] + lane;
-      double* to_bending = out[2] + lane;
-      std::fill(to_mass, to_mass + wide, 0.0);
-      std::fill(to_stiffness, to_stiffness + wide, 0.0);
-      std::fill(to_bending, to_bending + wide, 0.0);
-      for (int tap = 0; tap < 5; ++tap) {
-        const double m = rows[y].mass[tap], k = 2 * rows[y].stiffness[tap],
-                     b = rows[y].bending[tap];
-        const int at = (z * wide + y + tap) * wide;
-        for (int x = 0; x < wide; ++x) {
-          const double zm = in[0][at + x], zk = in[1][at + x], zb = in[2][at + x];
-          to_mass[x] += b * zm + m * zb + k * zk;
-          to_stiffness[x] += k * zm + 2 * m * zk;
-          to_bending[x] += m * zm;
-        }
-      }
-    }
 }
 
 }  // namespace
@@ -145,9 +117,9 @@ LevelArrays active_arrays(const OctreeGrid& grid, double value) {
   return arrays;
 }
 
-void gather(const BlockLevel& level, const std::vector<double>& values, std::size_t block, int low,
-            int width, double* cube) {
-  gather_table(level.neighbours[block], values, low, width, cube);
+void gather_cell_functions(const BlockLevel& level, const std::vector<double>& values,
+                           std::size_t block, double* cube) {
+  gather_table<0, block_cell_functions>(level.neighbours[block], values, cube);
 }
 
 void prolong(const OctreeGrid& grid, std::size_t l, const std::vector<double>& coarse,
@@ -163,7 +135,7 @@ void prolong(const OctreeGrid& grid, std::size_t l, const std::vector<double>& c
     // The block's functions depend on the coarse functions 2*place ... 2*place+2.
     constexpr int width = 5;
     double cube[width * width * width], part[27];
-    gather(coarser, coarse, level.parent[b], 0, width, cube);
+    gather_table<0, width>(coarser.neighbours[level.parent[b]], coarse, cube);
     const BlockPlace& p = level.blocks[b];
     const int x0 = p[0] % 2 * 2, y0 = p[1] % 2 * 2, z0 = p[2] % 2 * 2;
     for (int z = 0; z < 3; ++z)
@@ -180,35 +152,31 @@ void restrict_add(const OctreeGrid& grid, std::size_t l, const std::vector<doubl
   parallel_for(level.blocks.size(), [&](std::size_t b) {
     double cube[fine_wide * fine_wide * fine_wide];
     // Two child blocks lie side by side: their functions start two behind the cube's first.
-    if (gather_table(level.children[b], fine, 2, fine_wide, cube))
+    if (gather_table<2, fine_wide>(level.children[b], fine, cube))
       coarsen_cube(cube, coarse.data() + b * block_size);
   });
 }
 
 BendingStencil::BendingStencil(int depth)
-    : inverse_cell_(1 << depth), rows_(stencil_rows(1 << depth, block_width)) {}
+    : inverse_cell_(1 << depth), rows_(stencil_rows(1 << depth, block_width)) {
+  axis_of_block_.resize(rows_.size() / block_width);
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    for (int tap = 0; tap < 5; ++tap) {
+      auto& taps = axis_of_block_[i / block_width].taps;
+      taps[0][tap][i % block_width] = rows_[i].mass[tap];
+      taps[1][tap][i % block_width] = rows_[i].stiffness[tap];
+      taps[2][tap][i % block_width] = rows_[i].bending[tap];
+    }
+}
 
 void BendingStencil::add(const BlockLevel& level, const std::vector<double>& values,
                          std::size_t block, double factor, double* sum) const {
-  double cube[wide * wide * wide], by_z[3][lanes_z], by_y[3][lanes_y];
-  if (!gather_table(level.neighbours[block], values, halo, wide, cube)) return;
+  alignas(64) double cube[bending_side * bending_side * bending_side];
+  if (!gather_table<halo, bending_side>(level.neighbours[block], values, cube)) return;
   const BlockPlace& p = level.blocks[block];
-  const int row_z = p[2] * block_width, row_y = p[1] * block_width;
-  sum_along_z(cube, &rows_[row_z], by_z);
-  sum_along_y(by_z, &rows_[row_y], by_y);
   // With cells of width h, |D^2 f|^2 dV scales by h^-4 h^3.
-  const double scale = factor * inverse_cell_;
-  for (int line = 0; line < block_width * block_width; ++line)
-    for (int x = 0; x < block_width; ++x) {
-      const StencilRow& row = rows_[p[0] * block_width + x];
-      double total = 0;
-      for (int tap = 0; tap < 5; ++tap) {
-        const int at = line * wide + x + tap;
-        total += row.mass[tap] * by_y[0][at] + row.stiffness[tap] * by_y[1][at] +
-                 row.bending[tap] * by_y[2][at];
-      }
-      sum[x + block_width * line] += scale * total;
-    }
+  add_bending(cube, axis_of_block_[p[0]], axis_of_block_[p[1]], axis_of_block_[p[2]],
+              factor * inverse_cell_, sum);
 }
 
 double BendingStencil::diagonal(const BlockPlace& place, int slot) const {

@@ -9,6 +9,7 @@
 
 #include <vector>
 
+#include "libscan/reconstruct/bending_kernel.h"
 #include "libscan/reconstruct/bspline.h"
 #include "libscan/reconstruct/octree_grid.h"
 
@@ -28,10 +29,11 @@ void prolong(const OctreeGrid& grid, std::size_t l, const std::vector<double>& c
 void restrict_add(const OctreeGrid& grid, std::size_t l, const std::vector<double>& fine,
                   std::vector<double>& coarse);
 
-// Copies the functions 4*place-low ... of a block and its neighbours into a cube of `width` a side.
-// A block that is missing, or that lies behind the end of `values`, counts as zero.
-void gather(const BlockLevel& level, const std::vector<double>& values, std::size_t block, int low,
-            int width, double* cube);
+// Copies the functions that act on a block's cells, 4*place ... 4*place+5 per axis, into a cube. A
+// block that is missing, or that lies behind the end of `values`, counts as zero.
+inline constexpr int block_cell_functions = block_width + 2;
+void gather_cell_functions(const BlockLevel& level, const std::vector<double>& values,
+                           std::size_t block, double* cube);
 
 // integral of |D^2 f|^2 as a matrix of one level, for blocks `begin` ... `end`:
 // sum += factor * S values. `values` may hold active blocks only.
@@ -45,6 +47,7 @@ class BendingStencil {
  private:
   double inverse_cell_;
   std::vector<StencilRow> rows_;
+  std::vector<AxisStencil> axis_of_block_;
 };
 
 }  // namespace scan

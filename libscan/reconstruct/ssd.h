@@ -17,7 +17,7 @@ struct SsdOptions {
   double value_weight = 50;         // (f(p))^2
   double gradient_weight = 5e-4;    // |grad f(p) - n|^2
   double smoothness_weight = 1e-5;  // integral of |D^2 f|^2
-  double relative_residual = 1e-4;
+  double relative_residual = 5e-3;  // of the energy norm, see SsdSolution
   int max_iterations = 2000;
 };
 void check(const SsdOptions& options);

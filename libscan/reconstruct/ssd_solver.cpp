@@ -47,16 +47,20 @@ void next_direction(LevelArrays& direction, double factor, const LevelArrays& z,
 class Preconditioner {
  public:
   explicit Preconditioner(const SsdSystem& system)
-      : coarsest_(system.coarsest_matrix()), diagonal_(system.diagonal()) {
+      : functions_(system.coarsest_functions()),
+        matrix_(system.coarsest_matrix()),
+        coarsest_(matrix_),
+        diagonal_(system.diagonal()) {
     if (coarsest_.info() != Eigen::Success)
       throw Error(Trouble::computation, "ssd: the coarsest level's matrix is not positive definite",
                   "the weights differ too much, or the points do not determine a surface");
   }
 
   void apply(const LevelArrays& residual, std::size_t finest, LevelArrays& z) const {
-    const auto size = static_cast<Eigen::Index>(residual[0].size());
-    Eigen::Map<Eigen::VectorXd>(z[0].data(), size) =
-        coarsest_.solve(Eigen::Map<const Eigen::VectorXd>(residual[0].data(), size));
+    Eigen::VectorXd coarse(functions_.size());
+    for (std::size_t i = 0; i < functions_.size(); ++i) coarse[i] = residual[0][functions_[i]];
+    coarsest_.solveInPlace(coarse);
+    for (std::size_t i = 0; i < functions_.size(); ++i) z[0][functions_[i]] = coarse[i];
     for (std::size_t l = 1; l <= finest; ++l)
       parallel_for(
           z[l].size(), [&](std::size_t i) { z[l][i] = residual[l][i] / diagonal_[l][i]; }, chunk);
@@ -69,7 +73,9 @@ class Preconditioner {
   }
 
  private:
-  Eigen::LLT<Eigen::MatrixXd> coarsest_;
+  std::vector<std::uint32_t> functions_;
+  Eigen::MatrixXd matrix_;  // factorised in place
+  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> coarsest_;
   LevelArrays diagonal_;
 };
 

@@ -100,25 +100,41 @@ LevelArrays SsdSystem::diagonal() const {
   return result;
 }
 
+std::vector<std::uint32_t> SsdSystem::coarsest_functions() const {
+  const BlockLevel& level = grid_.levels.front();
+  std::vector<std::uint32_t> functions;
+  for (std::uint32_t i = 0; i < level.active * block_size; ++i) {
+    const BlockPlace& p = level.blocks[i / block_size];
+    const int slot = static_cast<int>(i % block_size), last = level.cells() + 1;
+    if (block_width * p[0] + slot % 4 <= last && block_width * p[1] + slot / 4 % 4 <= last &&
+        block_width * p[2] + slot / 16 <= last)
+      functions.push_back(i);
+  }
+  return functions;
+}
+
 Eigen::MatrixXd SsdSystem::coarsest_matrix() const {
   const BlockLevel& level = grid_.levels.front();
-  const Eigen::Index size = static_cast<Eigen::Index>(level.active * block_size);
+  const std::vector<std::uint32_t> functions = coarsest_functions();
+  const std::size_t size = functions.size(), all_functions = level.active * block_size;
+  std::vector<std::int32_t> row_of(all_functions, -1);
+  for (std::size_t row = 0; row < size; ++row)
+    row_of[functions[row]] = static_cast<std::int32_t>(row);
   std::vector<std::uint32_t> all(depths_.size());
   std::iota(all.begin(), all.end(), 0u);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
   SampleTerm(level, samples_, area_, all, weights_.value, weights_.gradient)
-      .add_matrix(level, matrix);
+      .add_matrix(level, row_of, matrix);
   parallel_for(
-      static_cast<std::size_t>(size),
+      size,
       [&](std::size_t column) {
-        std::vector<double> unit(size, 0.0);
-        unit[column] = 1;
-        double* sum = matrix.data() + column * size;  // columns are contiguous
-        for (const std::int32_t b : level.neighbours[column / block_size])
+        std::vector<double> unit(all_functions, 0.0), sum(all_functions, 0.0);
+        unit[functions[column]] = 1;
+        for (const std::int32_t b : level.neighbours[functions[column] / block_size])
           if (b >= 0)
             bending_[0].add(level, unit, b, weights_.smoothness,
-                            sum + std::ptrdiff_t{b} * block_size);
-        if (!(sum[column] > 0)) sum[column] = 1;
+                            sum.data() + std::size_t{static_cast<std::uint32_t>(b)} * block_size);
+        for (std::size_t row = 0; row < size; ++row) matrix(row, column) += sum[functions[row]];
       },
       16);
   return matrix;

@@ -34,7 +34,8 @@ class SsdSystem {
   LevelArrays right_side();
   // Of A; 1 where a row is empty (functions outside the cube).
   LevelArrays diagonal() const;
-  // The coarsest level's block of A, dense; 1 on the diagonal of empty rows.
+  // The coarsest level's functions that lie in the cube, and the block of A for these, dense.
+  std::vector<std::uint32_t> coarsest_functions() const;
   Eigen::MatrixXd coarsest_matrix() const;
   double energy(const LevelArrays& x);
 

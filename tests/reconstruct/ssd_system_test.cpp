@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -144,6 +145,8 @@ TEST(SsdSystem, KnowsItsDiagonalAndItsCoarsestMatrix) {
   SsdSystem system(problem.grid, problem.samples, problem.weights);
   const LevelArrays diagonal = system.diagonal();
   const Eigen::MatrixXd coarsest = system.coarsest_matrix();
+  const std::vector<std::uint32_t> functions = system.coarsest_functions();
+  EXPECT_EQ(functions.size(), 1000u);  // 8 cells and two more functions an axis
   for (std::size_t l = 0; l < diagonal.size(); ++l)
     for (std::size_t i = l; i < diagonal[l].size(); i += diagonal[l].size() / 7) {
       LevelArrays unit = active_arrays(problem.grid), column = unit;
@@ -152,8 +155,11 @@ TEST(SsdSystem, KnowsItsDiagonalAndItsCoarsestMatrix) {
       if (column[l][i] == 0) continue;  // outside the cube
       EXPECT_NEAR(column[l][i], diagonal[l][i], 1e-13 * diagonal[l][i]);
       if (l == 0) {
-        for (std::size_t j = 0; j < column[0].size(); ++j)
-          EXPECT_NEAR(column[0][j], coarsest(j, i), 1e-13 * diagonal[0][i]);
+        const auto row =
+            std::lower_bound(functions.begin(), functions.end(), i) - functions.begin();
+        ASSERT_EQ(functions[row], i);
+        for (std::size_t j = 0; j < functions.size(); ++j)
+          EXPECT_NEAR(column[0][functions[j]], coarsest(j, row), 1e-13 * diagonal[0][i]);
       }
     }
 }
