@@ -57,10 +57,8 @@ void fields(Fields& f, MultiviewOptions& o) {
 void fields(Fields& f, ReconstructSettings& s) {
   enumeration(f, "method", s.method, {"ssd", "delaunay"});
   f.integer("depth", s.ssd.depth);
-  f.number("samples_per_cell", s.ssd.samples_per_cell);
-  f.number("value_weight", s.ssd.value_weight);
-  f.number("gradient_weight", s.ssd.gradient_weight);
-  f.number("smoothness_weight", s.ssd.smoothness_weight);
+  f.length("sigma", s.ssd.sigma_m);
+  f.length("smoothing_length", s.ssd.smoothing_length_m);
   f.length("thin", s.thin_m);
   f.length("trim", s.trim_m);
   f.length("max_sigma", s.max_sigma_m);

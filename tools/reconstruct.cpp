@@ -44,11 +44,15 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
 
   const SurfaceResult result = make_surface(joined(scans, poses), settings, console);
   write_mesh(output, result.surface);
-  const auto json = surface_json(arguments.method, depth_of(settings), result);
+  const auto json = surface_json(arguments.method, result);
   console.say(output + ": " + std::to_string(result.surface.vertices.size()) + " vertices, " +
               std::to_string(result.surface.triangles.size()) + " triangles, " +
               std::to_string(json.at("components").get<int>()) + " components, " +
               (json.at("watertight").get<bool>() ? "watertight" : "not closed"));
+  if (result.depth > 0)
+    console.say("depth " + std::to_string(result.depth) + ", points scatter by " +
+                readable_length(result.sigma_m) + ", smoothing length " +
+                readable_length(result.smoothing_length_m));
   console.finish("reconstruct", "ok", json);
   return 0;
 }
@@ -59,7 +63,8 @@ Action reconstruct_command(CommandLine& line) {
   auto arguments = std::make_shared<Arguments>();
   line.inputs("INPUT... OUT", arguments->paths, "points with normals; last the mesh to write");
   line.choice("--method", arguments->method, {"ssd", "delaunay"}, "how the surface is made");
-  line.whole("--depth", arguments->depth, 3, 12, "ssd: octree depth; the box is 2^depth cells");
+  line.whole("--depth", arguments->depth, 3, 12,
+             "ssd: most; cells are not narrower than box / 2^depth");
   line.option("--poses", arguments->poses, "a pose for each input, in their order");
   line.length("--trim", arguments->trim_m, "remove surface farther than this from every point");
   line.length("--thin", arguments->thin_m, "first thin the points to one per cube of this side");

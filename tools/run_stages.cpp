@@ -72,8 +72,7 @@ void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Con
       make_surface(joined(read_run_scans(run), read_run_poses(run)), recipe.reconstruct, console);
   write_mesh(run / "surface.ply", result.surface);
   write_json(run / "reconstruction.json",
-             surface_json(std::string(name_of(recipe.reconstruct.method)),
-                          depth_of(recipe.reconstruct), result));
+             surface_json(std::string(name_of(recipe.reconstruct.method)), result));
 }
 
 Verdict verify_run(const std::filesystem::path& run, Console&) {

@@ -26,11 +26,6 @@ std::string_view name_of(ReconstructMethod method) {
   return method == ReconstructMethod::ssd ? "ssd" : "delaunay";
 }
 
-std::optional<int> depth_of(const ReconstructSettings& settings) {
-  if (settings.method != ReconstructMethod::ssd) return std::nullopt;
-  return settings.ssd.depth;
-}
-
 SurfaceResult make_surface(PointCloud cloud, const ReconstructSettings& settings,
                            Console& console) {
   if (settings.max_sigma_m > 0 && !cloud.sigma_m.empty())

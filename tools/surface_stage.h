@@ -15,7 +15,4 @@ SurfaceResult make_surface(PointCloud cloud, const ReconstructSettings& settings
 
 std::string_view name_of(ReconstructMethod method);
 
-// The octree's depth; none for a method without.
-std::optional<int> depth_of(const ReconstructSettings& settings);
-
 }  // namespace scan

@@ -85,11 +85,10 @@ ordered_json alignment_json(std::span<const std::string> files, const MultiviewR
           {"pairs_used", result.pairs_used}};
 }
 
-ordered_json surface_json(const std::string& method, std::optional<int> depth,
-                          const SurfaceResult& result) {
+ordered_json surface_json(const std::string& method, const SurfaceResult& result) {
   const EdgeCensus census = edge_census(result.surface);
   return {{"method", method},
-          {"depth", depth ? ordered_json(*depth) : ordered_json(nullptr)},
+          {"depth", result.depth > 0 ? ordered_json(result.depth) : ordered_json(nullptr)},
           {"vertices", result.surface.vertices.size()},
           {"triangles", result.surface.triangles.size()},
           {"components", census.components},
@@ -99,6 +98,8 @@ ordered_json surface_json(const std::string& method, std::optional<int> depth,
           {"iterations", result.iterations},
           {"unknowns", result.unknowns},
           {"finest_cell_m", number(result.finest_cell_m)},
+          {"sigma_m", number(result.sigma_m)},
+          {"smoothing_length_m", number(result.smoothing_length_m)},
           {"stop", name_of(result.stop)},
           {"invalid_points", result.invalid_points}};
 }

@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -35,9 +34,8 @@ nlohmann::ordered_json alignment_json(std::span<const std::string> files,
 
 // reconstruction.json: `method`, `depth` (null for methods without), `vertices`, `triangles`,
 // `components`, `watertight`, `genus`, `relative_residual`, `iterations`, `unknowns`,
-// `finest_cell_m`, `stop`, `invalid_points`.
-nlohmann::ordered_json surface_json(const std::string& method, std::optional<int> depth,
-                                    const SurfaceResult& result);
+// `finest_cell_m`, `sigma_m`, `smoothing_length_m`, `stop`, `invalid_points`.
+nlohmann::ordered_json surface_json(const std::string& method, const SurfaceResult& result);
 
 // `name`, `value`, `unit`, `over`, `count`, `limit`, `relation`, `pass`, `reason`; limit, relation
 // and reason are null without a limit.

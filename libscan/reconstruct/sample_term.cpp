@@ -44,6 +44,19 @@ ValueAndSlope evaluate(const double* cube, const CellWeights& w) {
   return f;
 }
 
+// Of the second derivatives, per square of the cell's width.
+double laplacian(const double* cube, const CellWeights& w) {
+  constexpr std::array<double, 3> second = {1, -2, 1};
+  double sum = 0;
+  for (int c = 0; c < 3; ++c)
+    for (int b = 0; b < 3; ++b)
+      for (int a = 0; a < 3; ++a)
+        sum += cube[a + cube_width * (b + cube_width * c)] *
+               (second[a] * w.y.value[b] * w.z.value[c] + w.x.value[a] * second[b] * w.z.value[c] +
+                w.x.value[a] * w.y.value[b] * second[c]);
+  return sum;
+}
+
 // Adds value * B + slope . grad B of the cell's 27 functions B (the transpose of evaluate).
 void accumulate(double* cube, const CellWeights& w, const ValueAndSlope& f) {
   for (int c = 0; c < 3; ++c)
@@ -56,6 +69,10 @@ void accumulate(double* cube, const CellWeights& w, const ValueAndSlope& f) {
       const double by_slope = f.slope[0] * w.y.value[b] * w.z.value[c];
       for (int a = 0; a < 3; ++a) q[a] += by_value * w.x.value[a] + by_slope * w.x.slope[a];
     }
+}
+
+BlockPlace cell_at(const Eigen::Vector3d& u, int cells) {
+  return {cell_of(u[0], cells), cell_of(u[1], cells), cell_of(u[2], cells)};
 }
 
 using CellMatrix = Eigen::Matrix<double, 27, 27>;
@@ -71,7 +88,8 @@ void add_outer_products(const Eigen::Vector3d& in_cell, double value_factor, dou
     rows(i, 2) = std::sqrt(slope_factor) * w.x.value[a] * w.y.slope[b] * w.z.value[c];
     rows(i, 3) = std::sqrt(slope_factor) * w.x.value[a] * w.y.value[b] * w.z.slope[c];
   }
-  sum.noalias() += rows * rows.transpose();
+  for (int k = 0; k < 4; ++k)
+    for (int j = 0; j < 27; ++j) sum.col(j) += rows(j, k) * rows.col(k);
 }
 
 // Where the 27 functions of a cell lie among all functions of the level.
@@ -91,10 +109,32 @@ std::array<Eigen::Index, 27> cell_functions(const BlockLevel& level, std::size_t
 
 }  // namespace
 
+void add_sample_diagonal(const BlockLevel& level, const Samples& samples,
+                         const SampleWeights& weights, std::span<const std::uint32_t> chosen,
+                         std::vector<double>& sum) {
+  const auto square = [](double x) { return x * x; };
+  const double cells = level.cells();
+  for (const std::uint32_t i : chosen) {
+    const BlockPlace cell = cell_at(samples.points[i], level.cells());
+    const std::int32_t block = level.find({cell[0] / 4, cell[1] / 4, cell[2] / 4});
+    const CellWeights w =
+        weights_at(samples.points[i] * cells - Eigen::Vector3d(cell[0], cell[1], cell[2]));
+    const std::array<Eigen::Index, 27> at = cell_functions(
+        level, block, cell[0] % 4 + cube_width * (cell[1] % 4 + cube_width * (cell[2] % 4)));
+    for (int k = 0; k < 27; ++k) {
+      const int a = k % 3, b = k / 3 % 3, c = k / 9;
+      const double value = square(w.x.value[a] * w.y.value[b] * w.z.value[c]);
+      const double slope = square(w.x.slope[a] * w.y.value[b] * w.z.value[c]) +
+                           square(w.x.value[a] * w.y.slope[b] * w.z.value[c]) +
+                           square(w.x.value[a] * w.y.value[b] * w.z.slope[c]);
+      sum[at[k]] += weights.value[i] * value + weights.gradient[i] * cells * cells * slope;
+    }
+  }
+}
+
 SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
-                       std::span<const double> weight, std::span<const std::uint32_t> chosen,
-                       double value_weight, double gradient_weight)
-    : value_weight_(value_weight), gradient_weight_(gradient_weight), cells_(level.cells()) {
+                       const SampleWeights& weights, std::span<const std::uint32_t> chosen)
+    : cells_(level.cells()) {
   struct Address {
     std::uint32_t block, cell, sample;
     bool operator<(const Address& other) const {
@@ -102,12 +142,8 @@ SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
     }
   };
   std::vector<Address> addresses(chosen.size());
-  const auto cell_along = [&](const Eigen::Vector3d& u, int a) {
-    return cell_of(u[a], level.cells());
-  };
   parallel_for(chosen.size(), [&](std::size_t i) {
-    const Eigen::Vector3d& u = samples.points[chosen[i]];
-    const BlockPlace cell = {cell_along(u, 0), cell_along(u, 1), cell_along(u, 2)};
+    const BlockPlace cell = cell_at(samples.points[chosen[i]], level.cells());
     const std::int32_t block = level.find({cell[0] / 4, cell[1] / 4, cell[2] / 4});
     addresses[i] = {
         static_cast<std::uint32_t>(block),
@@ -124,12 +160,21 @@ SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
       bucket_begin_.push_back(static_cast<std::uint32_t>(placed_.size()));
     }
     const Eigen::Vector3d& u = samples.points[at.sample];
-    const Eigen::Vector3d cell(cell_along(u, 0), cell_along(u, 1), cell_along(u, 2));
+    const Eigen::Vector3d& normal = samples.normals[at.sample];
+    const BlockPlace cell = cell_at(u, level.cells());
     const int x = at.cell % 4, y = at.cell / 4 % 4, z = at.cell / 16;
-    placed_.push_back({u * cells_ - cell, samples.normals[at.sample], weight[at.sample],
-                       x + cube_width * (y + cube_width * z)});
+    placed_.push_back({u * cells_ - Eigen::Vector3d(cell[0], cell[1], cell[2]), normal, 0, 0, 0,
+                       at.sample, x + cube_width * (y + cube_width * z)});
   }
   bucket_begin_.push_back(static_cast<std::uint32_t>(placed_.size()));
+  set_weights(weights);
+}
+
+void SampleTerm::set_weights(const SampleWeights& weights) {
+  for (Placed& sample : placed_) {
+    sample.value_weight = weights.value[sample.sample];
+    sample.gradient_weight = weights.gradient[sample.sample];
+  }
 }
 
 template <class Accumulate>
@@ -169,8 +214,8 @@ void SampleTerm::add_product(const BlockLevel& level, const std::vector<double>&
       const Placed& sample = placed_[i];
       const CellWeights w = weights_at(sample.in_cell);
       ValueAndSlope f = evaluate(cube + sample.corner, w);
-      f.value *= sample.weight * value_weight_;
-      f.slope *= sample.weight * gradient_weight_ * cells_ * cells_;
+      f.value *= sample.value_weight;
+      f.slope *= sample.gradient_weight * cells_ * cells_;
       accumulate(buffer + sample.corner, w, f);
     }
   });
@@ -181,28 +226,8 @@ void SampleTerm::add_right_side(const BlockLevel& level, std::vector<double>& su
     for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
       const Placed& sample = placed_[i];
       accumulate(buffer + sample.corner, weights_at(sample.in_cell),
-                 {0, sample.weight * gradient_weight_ * cells_ * sample.normal});
-    }
-  });
-}
-
-void SampleTerm::add_diagonal(const BlockLevel& level, std::vector<double>& sum) const {
-  const auto square = [](double x) { return x * x; };
-  scatter(level, sum, [&](std::size_t bucket, double* buffer) {
-    for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
-      const Placed& sample = placed_[i];
-      const CellWeights w = weights_at(sample.in_cell);
-      for (int c = 0; c < 3; ++c)
-        for (int b = 0; b < 3; ++b)
-          for (int a = 0; a < 3; ++a) {
-            const double value = square(w.x.value[a] * w.y.value[b] * w.z.value[c]);
-            const double slope = square(w.x.slope[a] * w.y.value[b] * w.z.value[c]) +
-                                 square(w.x.value[a] * w.y.slope[b] * w.z.value[c]) +
-                                 square(w.x.value[a] * w.y.value[b] * w.z.slope[c]);
-            buffer[sample.corner + a + cube_width * (b + cube_width * c)] +=
-                sample.weight *
-                (value_weight_ * value + gradient_weight_ * cells_ * cells_ * slope);
-          }
+                 {sample.value_weight * sample.value_target,
+                  sample.gradient_weight * cells_ * sample.normal});
     }
   });
 }
@@ -215,13 +240,47 @@ void SampleTerm::add_matrix(const BlockLevel& level, std::span<const std::int32_
       const int corner = placed_[i].corner;
       CellMatrix sum = CellMatrix::Zero();
       for (; i < bucket_begin_[bucket + 1] && placed_[i].corner == corner; ++i)
-        add_outer_products(placed_[i].in_cell, placed_[i].weight * value_weight_,
-                           placed_[i].weight * gradient_weight_ * cells_ * cells_, sum);
+        add_outer_products(placed_[i].in_cell, placed_[i].value_weight,
+                           placed_[i].gradient_weight * cells_ * cells_, sum);
       const std::array<Eigen::Index, 27> at = cell_functions(level, bucket_block_[bucket], corner);
       for (int b = 0; b < 27; ++b)
         for (int a = 0; a < 27; ++a) matrix(row_of[at[a]], row_of[at[b]]) += sum(a, b);
     }
   }
+}
+
+void SampleTerm::write_residuals(const BlockLevel& level, const std::vector<double>& u,
+                                 std::vector<double>& residuals) const {
+  parallel_for(
+      bucket_block_.size(),
+      [&](std::size_t bucket) {
+        double cube[cube_size];
+        gather_cell_functions(level, u, bucket_block_[bucket], cube);
+        for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
+          const ValueAndSlope f =
+              evaluate(cube + placed_[i].corner, weights_at(placed_[i].in_cell));
+          const double slope = cells_ * f.slope.norm();
+          residuals[placed_[i].sample] = slope > 0 ? f.value / slope : 0;
+        }
+      },
+      buckets_per_task);
+}
+
+void SampleTerm::aim_at_scattered_mean(const BlockLevel& level, const std::vector<double>& u,
+                                       std::span<const double> sigma) {
+  parallel_for(
+      bucket_block_.size(),
+      [&](std::size_t bucket) {
+        double cube[cube_size];
+        gather_cell_functions(level, u, bucket_block_[bucket], cube);
+        for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
+          Placed& sample = placed_[i];
+          const double scale = sigma[sample.sample] * cells_;
+          sample.value_target =
+              0.5 * scale * scale * laplacian(cube + sample.corner, weights_at(sample.in_cell));
+        }
+      },
+      buckets_per_task);
 }
 
 double SampleTerm::energy(const BlockLevel& level, const std::vector<double>& u) const {
@@ -232,9 +291,9 @@ double SampleTerm::energy(const BlockLevel& level, const std::vector<double>& u)
     for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
       const Placed& sample = placed_[i];
       const ValueAndSlope f = evaluate(cube + sample.corner, weights_at(sample.in_cell));
-      total +=
-          sample.weight * (value_weight_ * f.value * f.value +
-                           gradient_weight_ * (cells_ * f.slope - sample.normal).squaredNorm());
+      const double value = f.value - sample.value_target;
+      total += sample.value_weight * value * value +
+               sample.gradient_weight * (cells_ * f.slope - sample.normal).squaredNorm();
     }
   }
   return total;

@@ -10,6 +10,8 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "libscan/reconstruct/noise.h"
+#include "libscan/search/batch.h"
 #include "libscan/search/kd_tree.h"
 
 namespace scan {
@@ -17,8 +19,11 @@ namespace {
 
 constexpr std::size_t least_points = 16;
 constexpr std::size_t area_neighbours = 10;
+constexpr double cells_per_spacing = 1, cells_per_sigma = 1.5;
 
 bool is_valid(const PointCloud& cloud, std::size_t i) {
+  if (!cloud.sigma_m.empty() && !(cloud.sigma_m[i] >= 0 && std::isfinite(cloud.sigma_m[i])))
+    return false;
   return cloud.points[i].allFinite() && cloud.normals[i].allFinite() &&
          cloud.normals[i].norm() > 1e-6;
 }
@@ -47,8 +52,11 @@ void merge_equal_points(const PointCloud& cloud, std::vector<std::size_t>& indic
   });
   for (std::size_t first = 0, last; first < indices.size(); first = last) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (last = first; last < indices.size() && key(indices[last]) == key(indices[first]); ++last)
+    double sigma_m = 0;
+    for (last = first; last < indices.size() && key(indices[last]) == key(indices[first]); ++last) {
       sum += cloud.normals[indices[last]].normalized();
+      if (!cloud.sigma_m.empty()) sigma_m += cloud.sigma_m[indices[last]];
+    }
     const double agreement = sum.norm() / static_cast<double>(last - first);
     if (agreement < 0.1) {
       samples.invalid_points += last - first;
@@ -56,28 +64,30 @@ void merge_equal_points(const PointCloud& cloud, std::vector<std::size_t>& indic
     }
     samples.points.push_back(samples.box.to_unit(cloud.points[indices[first]]));
     samples.normals.push_back(sum.normalized());
+    if (!cloud.sigma_m.empty())
+      samples.sigma.push_back(sigma_m / static_cast<double>(last - first) / samples.box.side_m);
   }
 }
 
-void estimate_areas(Samples& samples) {
-  const KdTree tree(samples.points);
+// pi r^2 / k to the k-th of every `step`-th point, for all points, then the median around.
+void estimate_areas(Samples& samples, std::size_t step) {
+  std::vector<Eigen::Vector3d> thinned;
+  for (std::size_t i = 0; i < samples.points.size(); i += step)
+    thinned.push_back(samples.points[i]);
+  const KdTree tree(thinned);
   const std::size_t count = samples.points.size();
-  const std::size_t k = std::min(area_neighbours, count - 1);
-  std::vector<std::uint32_t> around(count * k);
+  const std::size_t k = std::min(area_neighbours, thinned.size() - 1);
+  const std::vector<std::uint32_t> order = curve_order(samples.points);
+  std::vector<Neighbour> found;
+  k_nearest_of_each(tree, samples.points, k + 1, order, found);
   std::vector<double> raw(count);
-  parallel_chunks(count, 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<Neighbour> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      tree.k_nearest(samples.points[i], k + 1, found);  // the point itself is one of them
-      raw[i] = std::numbers::pi * found.back().distance2_m2 / static_cast<double>(k);
-      for (std::size_t n = 0; n < k; ++n) around[i * k + n] = found[n + 1].index;
-    }
-  });
+  for (std::size_t i = 0; i < count; ++i)
+    raw[i] = std::numbers::pi * found[i * (k + 1) + k].distance2_m2 / static_cast<double>(k * step);
   samples.area.resize(count);
   parallel_chunks(count, 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> areas(k);
+    std::vector<double> areas(k + 1);
     for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t n = 0; n < k; ++n) areas[n] = raw[around[i * k + n]];
+      for (std::size_t n = 0; n <= k; ++n) areas[n] = raw[found[i * (k + 1) + n].index * step];
       std::nth_element(areas.begin(), areas.begin() + static_cast<std::ptrdiff_t>(k / 2),
                        areas.end());
       samples.area[i] = areas[k / 2];
@@ -85,9 +95,25 @@ void estimate_areas(Samples& samples) {
   });
 }
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void measure_areas(Samples& samples) {
+  estimate_areas(samples, 1);
+  // k neighbours of a surface lie within sqrt(k m / pi) spacings; let that be three sigma.
+  const double spacings = 3 * median(samples.sigma) / std::sqrt(median(samples.area));
+  const double step = std::ceil(std::numbers::pi * spacings * spacings / area_neighbours);
+  const double most = static_cast<double>(samples.points.size()) / (4.0 * area_neighbours);
+  if (step > 1 && most >= 1)
+    estimate_areas(samples, static_cast<std::size_t>(std::min(step, most)));
+}
+
 }  // namespace
 
-Samples prepare_samples(const PointCloud& cloud) {
+Samples prepare_samples(const PointCloud& cloud, double sigma_m) {
   check(cloud);
   Samples samples;
   std::vector<std::size_t> valid;
@@ -110,15 +136,23 @@ Samples prepare_samples(const PointCloud& cloud) {
   samples.outlying_points = points.size() - valid.size();
   merge_equal_points(cloud, valid, samples);
   require_enough(samples.points.size(), "valid points at different places");
-  estimate_areas(samples);
+  samples.scattered_all_around = samples.sigma.empty();
+  if (samples.sigma.empty())
+    samples.sigma.assign(samples.points.size(), sigma_m > 0 ? sigma_m / samples.box.side_m
+                                                            : estimate_sigma(samples.points));
+  measure_areas(samples);
   return samples;
 }
 
-std::vector<int> sample_depths(const Samples& samples, double samples_per_cell, int least,
-                               int most) {
+std::vector<int> sample_depths(const Samples& samples, int least, int most) {
   std::vector<int> depths(samples.points.size());
+  // Chance makes some areas small: the finest level is one that a twentieth of the samples want.
+  std::vector<double> areas = samples.area;
+  const auto small = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 20);
+  std::nth_element(areas.begin(), small, areas.end());
   for (std::size_t i = 0; i < depths.size(); ++i) {
-    const double cell = std::sqrt(samples_per_cell * samples.area[i]);
+    const double cell = cells_per_spacing * std::sqrt(std::max(samples.area[i], *small)) +
+                        cells_per_sigma * samples.sigma[i];
     depths[i] =
         cell > 0
             ? static_cast<int>(std::clamp(std::floor(-std::log2(cell)), static_cast<double>(least),

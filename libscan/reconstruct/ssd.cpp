@@ -8,8 +8,11 @@
 
 #include "libscan/core/error.h"
 #include "libscan/reconstruct/isosurface.h"
-#include "libscan/reconstruct/ssd_solver.h"
+#include "libscan/reconstruct/local_smoothing.h"
+#include "libscan/reconstruct/ssd_fit.h"
 #include "libscan/reconstruct/support.h"
+#include "libscan/search/batch.h"
+#include "libscan/search/kd_tree.h"
 
 namespace scan {
 namespace {
@@ -23,20 +26,39 @@ void require(bool fulfilled, const char* field, double value, const char* limit)
                 std::string("ssd: ") + field + " is " + std::to_string(value) + ", limit " + limit);
 }
 
-bool is_positive(double x) {
-  return x > 0 && std::isfinite(x);
+bool is_length(double x) {
+  return x >= 0 && std::isfinite(x);
 }
 
-SurfaceResult world_result(Mesh mesh, const Samples& samples) {
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Of each vertex, from the sample next to it.
+void add_support(const Samples& samples, const std::vector<double>& length, SurfaceResult& result) {
+  const KdTree tree(samples.points);
+  const auto& vertices = result.surface.vertices;
+  std::vector<Neighbour> nearest;
+  nearest_of_each(tree, vertices, unlimited_m, curve_order(vertices), nearest);
+  for (const Neighbour& n : nearest) {
+    result.support_m.push_back(samples.box.side_m * std::sqrt(n.distance2_m2));
+    result.standard_error_m.push_back(
+        samples.box.side_m * samples.sigma[n.index] *
+        std::sqrt(posterior_variance(samples.area[n.index], length[n.index])));
+  }
+}
+
+SurfaceResult world_result(Mesh mesh, const Samples& samples, const std::vector<double>& length) {
   if (mesh.empty())
     throw Error(Trouble::computation, "ssd: no surface crosses the box",
                 "check that the normals are oriented consistently");
-  mesh = supported_components(mesh, samples.points, samples.area, least_support);
   SurfaceResult result;
-  result.support_m = distance_to_points(mesh, samples.points);
-  for (double& support : result.support_m) support *= samples.box.side_m;
-  for (auto& vertex : mesh.vertices) vertex = samples.box.to_world(vertex);
-  result.surface = std::move(mesh);
+  result.surface = supported_components(mesh, samples.points, samples.area, least_support);
+  mesh = {};
+  add_support(samples, length, result);
+  for (auto& vertex : result.surface.vertices) vertex = samples.box.to_world(vertex);
   return result;
 }
 
@@ -50,13 +72,9 @@ std::size_t active_functions(const OctreeGrid& grid) {
 
 void check(const SsdOptions& options) {
   require(options.depth >= 3 && options.depth <= 12, "depth", options.depth, "3 to 12");
-  require(is_positive(options.samples_per_cell), "samples_per_cell", options.samples_per_cell,
-          "above 0");
-  require(is_positive(options.value_weight), "value_weight", options.value_weight, "above 0");
-  require(is_positive(options.gradient_weight), "gradient_weight", options.gradient_weight,
-          "above 0");
-  require(is_positive(options.smoothness_weight), "smoothness_weight", options.smoothness_weight,
-          "above 0");
+  require(is_length(options.sigma_m), "sigma_m", options.sigma_m, "at least 0");
+  require(is_length(options.smoothing_length_m), "smoothing_length_m", options.smoothing_length_m,
+          "at least 0");
   require(options.relative_residual > 0 && options.relative_residual < 1, "relative_residual",
           options.relative_residual, "between 0 and 1");
   require(options.max_iterations > 0, "max_iterations", options.max_iterations, "above 0");
@@ -65,26 +83,29 @@ void check(const SsdOptions& options) {
 SurfaceResult ssd(const PointCloud& cloud, const SsdOptions& options, const Progress& progress) {
   check(options);
   const Stopwatch watch;
-  const Samples samples = prepare_samples(cloud);
+  const Samples samples = prepare_samples(cloud, options.sigma_m);
   const int complete_depth = std::min(most_complete_depth, options.depth);
-  const std::vector<int> depths =
-      sample_depths(samples, options.samples_per_cell, complete_depth, options.depth);
+  const std::vector<int> depths = sample_depths(samples, complete_depth, options.depth);
   if (progress) progress("octree", 0);
   const OctreeGrid grid = make_octree_grid(samples.points, depths, complete_depth);
-  SsdSystem system(grid, samples,
-                   {options.value_weight, options.gradient_weight, options.smoothness_weight});
-  const SsdSolution solution =
-      solve(system, grid, options.relative_residual, options.max_iterations, progress);
+  const SsdFit fit = fit_surface(grid, samples,
+                                 {.length = options.smoothing_length_m / samples.box.side_m,
+                                  .relative_residual = options.relative_residual,
+                                  .max_iterations = options.max_iterations},
+                                 progress);
   if (progress) progress("surface", 0);
   // One level below the solution, where the depth allows it: smaller facets on the same function.
   const int surface_depth = std::min(options.depth, grid.finest_depth() + 1);
-  SurfaceResult result =
-      world_result(zero_level_set({grid, solution.coefficients}, surface_depth), samples);
+  SurfaceResult result = world_result(
+      zero_level_set({grid, fit.solution.coefficients}, surface_depth), samples, fit.length);
   result.finest_cell_m = samples.box.side_m / (1 << surface_depth);
+  result.depth = grid.finest_depth();
+  result.sigma_m = samples.box.side_m * median(samples.sigma);
+  result.smoothing_length_m = samples.box.side_m * median(fit.length);
   result.unknowns = active_functions(grid);
-  result.iterations = solution.iterations;
-  result.relative_residual = solution.relative_residual;
-  result.stop = solution.stop;
+  result.iterations = fit.solution.iterations;
+  result.relative_residual = fit.solution.relative_residual;
+  result.stop = fit.solution.stop;
   result.invalid_points = samples.invalid_points;
   result.outlying_points = samples.outlying_points;
   result.cost.seconds = watch.seconds();

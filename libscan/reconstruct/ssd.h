@@ -8,15 +8,11 @@
 
 namespace scan {
 
-// Weights are dimensionless: the box is scaled to the unit cube and the points to unit total area.
-// Where the points are sparse, cells stay wide enough to hold samples_per_cell of them (spacing and
-// noise both count, since noise moves neighbours apart), so `depth` is a limit, not a demand.
+// What is 0 is chosen from the points.
 struct SsdOptions {
-  int depth = 8;                    // finest cell = box / 2^depth; 3 to 12
-  double samples_per_cell = 1.5;    // cells on the surface with more points split
-  double value_weight = 50;         // (f(p))^2
-  double gradient_weight = 5e-4;    // |grad f(p) - n|^2
-  double smoothness_weight = 1e-5;  // integral of |D^2 f|^2
+  int depth = 12;                   // most: cells are not narrower than box / 2^depth; 3 to 12
+  double sigma_m = 0;               // scatter of points that do not carry their own
+  double smoothing_length_m = 0;    // least; ripples of 2 pi times this length are halved
   double relative_residual = 5e-3;  // of the energy norm, see SsdSolution
   int max_iterations = 2000;
 };

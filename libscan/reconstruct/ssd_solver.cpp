@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
@@ -83,18 +84,44 @@ struct Work {
   LevelArrays residual, preconditioned, direction, product;
 };
 
-// residual = b - A x
-void start_residual(SsdSystem& system, const LevelArrays& b, const LevelArrays& x, Work& work) {
-  system.multiply(x, work.product);
-  work.residual = b;
-  add_scaled(work.residual, -1, work.product, system.finest());
+}  // namespace
+
+struct SsdSolver::State {
+  SsdSystem& system;
+  std::optional<Preconditioner> precondition;
+  Work work;
+
+  // work.residual = b - A x
+  void start_residual(const LevelArrays& b, const LevelArrays& x) {
+    system.multiply(x, work.product);
+    work.residual = b;
+    add_scaled(work.residual, -1, work.product, system.finest());
+  }
+};
+
+SsdSolver::SsdSolver(SsdSystem& system, const OctreeGrid& grid)
+    : state_(new State{
+          system,
+          std::nullopt,
+          {active_arrays(grid), active_arrays(grid), active_arrays(grid), active_arrays(grid)}}) {
+  refresh();
 }
 
-// Conjugate gradients on the levels in use, from x. Returns the iterations.
-int conjugate_gradients(SsdSystem& system, const LevelArrays& b, const Preconditioner& precondition,
-                        double target, int max_iterations, LevelArrays& x, Work& work) {
+SsdSolver::~SsdSolver() = default;
+
+void SsdSolver::refresh() {
+  state_->precondition.reset();
+  state_->precondition.emplace(state_->system);
+}
+
+int SsdSolver::improve(double relative_residual, int max_iterations, LevelArrays& x) {
+  SsdSystem& system = state_->system;
+  const Preconditioner& precondition = *state_->precondition;
+  Work& work = state_->work;
   const std::size_t finest = system.finest();
-  start_residual(system, b, x, work);
+  const LevelArrays b = system.right_side();
+  const double target = relative_residual * precondition.norm(b, finest, work.preconditioned);
+  state_->start_residual(b, x);
   for (auto& values : work.direction) std::fill(values.begin(), values.end(), 0.0);
   precondition.apply(work.residual, finest, work.preconditioned);
   double rho = dot(work.residual, work.preconditioned, finest);
@@ -115,34 +142,32 @@ int conjugate_gradients(SsdSystem& system, const LevelArrays& b, const Precondit
   return iteration;
 }
 
-}  // namespace
+double SsdSolver::relative_residual(const LevelArrays& x) {
+  const LevelArrays b = state_->system.right_side();
+  const std::size_t finest = state_->system.finest();
+  LevelArrays& z = state_->work.preconditioned;
+  const double scale = state_->precondition->norm(b, finest, z);
+  state_->start_residual(b, x);
+  const double left = state_->precondition->norm(state_->work.residual, finest, z);
+  return scale > 0 ? left / scale : 0;
+}
 
 SsdSolution solve(SsdSystem& system, const OctreeGrid& grid, double relative_residual,
-                  int max_iterations, const Progress& progress) {
+                  int max_iterations) {
   SsdSolution solution;
   solution.coefficients = active_arrays(grid);
-  Work work{active_arrays(grid), active_arrays(grid), active_arrays(grid), active_arrays(grid)};
+  SsdSolver solver(system, grid);
   const std::size_t levels = grid.levels.size();
-  system.use_levels(levels - 1);
-  const Preconditioner precondition(system);
-  double scale = 0;
   for (std::size_t l = 0; l < levels; ++l) {
-    if (progress) progress("solve", static_cast<double>(l) / static_cast<double>(levels));
     system.use_levels(l);
-    const LevelArrays b = system.right_side();
     // What a coarse start leaves behind the finer levels must repair anyway: ten times the target.
     const double share = l + 1 < levels ? 10 * relative_residual : relative_residual;
-    scale = precondition.norm(b, l, work.preconditioned);
     solution.iterations +=
-        conjugate_gradients(system, b, precondition, share * scale,
-                            max_iterations - solution.iterations, solution.coefficients, work);
-    if (l + 1 == levels) start_residual(system, b, solution.coefficients, work);
+        solver.improve(share, max_iterations - solution.iterations, solution.coefficients);
   }
-  const double left = precondition.norm(work.residual, levels - 1, work.preconditioned);
-  solution.relative_residual = scale > 0 ? left / scale : 0;
+  solution.relative_residual = solver.relative_residual(solution.coefficients);
   // The residual that conjugate gradients carries along drifts from the true one by rounding.
   if (solution.relative_residual <= 1.01 * relative_residual) solution.stop = SolveStop::converged;
-  if (progress) progress("solve", 1);
   return solution;
 }
 

@@ -3,7 +3,8 @@
 // Minimiser of the SSD energy: conjugate gradients, from the coarsest level to all levels.
 #pragma once
 
-#include "libscan/core/progress.h"
+#include <memory>
+
 #include "libscan/reconstruct/ssd_system.h"
 #include "libscan/reconstruct/surface_result.h"
 
@@ -21,7 +22,26 @@ struct SsdSolution {
 // Preconditioner: the diagonal of the system with all levels' functions, which acts as a multilevel
 // preconditioner of the finest level (Bramble, Pasciak and Xu 1990; Griebel 1994), and an exact
 // solution on the coarsest level.
+class SsdSolver {
+ public:
+  // Keeps a reference to the system.
+  SsdSolver(SsdSystem& system, const OctreeGrid& grid);
+  ~SsdSolver();
+  // To be called when the system's levels or weights have changed.
+  void refresh();
+  // Conjugate gradients on the levels in use until the residual is `relative_residual` of the right
+  // side. Returns the iterations.
+  int improve(double relative_residual, int max_iterations, LevelArrays& x);
+  // sqrt(r' P r / b' P b), r = b - A x.
+  double relative_residual(const LevelArrays& x);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// From the coarsest level to all levels.
 SsdSolution solve(SsdSystem& system, const OctreeGrid& grid, double relative_residual,
-                  int max_iterations, const Progress& progress = {});
+                  int max_iterations);
 
 }  // namespace scan

@@ -9,15 +9,12 @@
 
 namespace scan {
 
-SsdSystem::SsdSystem(const OctreeGrid& grid, const Samples& samples, const SsdWeights& weights)
+SsdSystem::SsdSystem(const OctreeGrid& grid, const Samples& samples, SampleWeights weights)
     : grid_(grid),
       samples_(samples),
       depths_(depths_seen(grid, samples.points)),
-      weights_(weights),
-      area_(samples.area),
+      weights_(std::move(weights)),
       terms_(grid.levels.size()) {
-  const double total = std::accumulate(area_.begin(), area_.end(), 0.0);
-  for (double& a : area_) a /= total;
   for (const BlockLevel& level : grid.levels) {
     bending_.emplace_back(level.depth);
     sums_.emplace_back(level.blocks.size() * block_size, 0.0);
@@ -26,14 +23,18 @@ SsdSystem::SsdSystem(const OctreeGrid& grid, const Samples& samples, const SsdWe
   use_levels(grid.levels.size() - 1);
 }
 
+void SsdSystem::set_weights(SampleWeights weights) {
+  weights_ = std::move(weights);
+  for (std::size_t l = 0; l <= finest_; ++l) terms_[l].set_weights(weights_);
+}
+
 void SsdSystem::use_levels(std::size_t finest) {
   finest_ = finest;
   std::vector<std::vector<std::uint32_t>> chosen(finest + 1);
   for (std::uint32_t i = 0; i < depths_.size(); ++i)
     chosen[std::min<std::size_t>(depths_[i] - coarsest_depth, finest)].push_back(i);
   for (std::size_t l = 0; l <= finest; ++l)
-    terms_[l] =
-        SampleTerm(grid_.levels[l], samples_, area_, chosen[l], weights_.value, weights_.gradient);
+    terms_[l] = SampleTerm(grid_.levels[l], samples_, weights_, chosen[l]);
 }
 
 void SsdSystem::accumulate_coarse_to_fine(const LevelArrays& x) {
@@ -56,12 +57,12 @@ void SsdSystem::multiply(const LevelArrays& x, LevelArrays& y, bool with_samples
     if (with_samples) terms_[l].add_product(level, sums_[l], rest);
     parallel_for(level.active, [&](std::size_t b) {
       std::copy_n(rest.data() + b * block_size, block_size, y[l].data() + b * block_size);
-      bending_[l].add(level, sums_[l], b, weights_.smoothness, y[l].data() + b * block_size);
+      bending_[l].add(level, sums_[l], b, 1, y[l].data() + b * block_size);
     });
     // Coarser levels have seen their own part of `sums_`: they lack what this level adds.
     if (l > 0)
       parallel_for(level.blocks.size(), [&](std::size_t b) {
-        bending_[l].add(level, x[l], b, weights_.smoothness, rest.data() + b * block_size);
+        bending_[l].add(level, x[l], b, 1, rest.data() + b * block_size);
       });
   }
 }
@@ -80,23 +81,22 @@ LevelArrays SsdSystem::right_side() {
 
 LevelArrays SsdSystem::diagonal() const {
   LevelArrays result = active_arrays(grid_);
-  for (std::size_t l = 0; l <= finest_; ++l) {
+  const auto of_level = [&](std::size_t l) {
     const BlockLevel& level = grid_.levels[l];
     std::vector<std::uint32_t> chosen;  // a level's functions meet the samples of finer levels too
     for (std::uint32_t i = 0; i < depths_.size(); ++i)
       if (depths_[i] >= level.depth) chosen.push_back(i);
     std::vector<double> sum(level.blocks.size() * block_size, 0.0);
-    SampleTerm(level, samples_, area_, chosen, weights_.value, weights_.gradient)
-        .add_diagonal(level, sum);
+    add_sample_diagonal(level, samples_, weights_, chosen, sum);
     parallel_for(level.active, [&](std::size_t b) {
       for (int slot = 0; slot < block_size; ++slot) {
         const std::size_t i = b * block_size + slot;
-        const double entry =
-            sum[i] + weights_.smoothness * bending_[l].diagonal(level.blocks[b], slot);
+        const double entry = sum[i] + bending_[l].diagonal(level.blocks[b], slot);
         result[l][i] = entry > 0 ? entry : 1;
       }
     });
-  }
+  };
+  parallel_for(finest_ + 1, of_level, 1);
   return result;
 }
 
@@ -123,8 +123,7 @@ Eigen::MatrixXd SsdSystem::coarsest_matrix() const {
   std::vector<std::uint32_t> all(depths_.size());
   std::iota(all.begin(), all.end(), 0u);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
-  SampleTerm(level, samples_, area_, all, weights_.value, weights_.gradient)
-      .add_matrix(level, row_of, matrix);
+  SampleTerm(level, samples_, weights_, all).add_matrix(level, row_of, matrix);
   parallel_for(
       size,
       [&](std::size_t column) {
@@ -132,12 +131,26 @@ Eigen::MatrixXd SsdSystem::coarsest_matrix() const {
         unit[functions[column]] = 1;
         for (const std::int32_t b : level.neighbours[functions[column] / block_size])
           if (b >= 0)
-            bending_[0].add(level, unit, b, weights_.smoothness,
+            bending_[0].add(level, unit, b, 1,
                             sum.data() + std::size_t{static_cast<std::uint32_t>(b)} * block_size);
         for (std::size_t row = 0; row < size; ++row) matrix(row, column) += sum[functions[row]];
       },
       16);
   return matrix;
+}
+
+std::vector<double> SsdSystem::residuals(const LevelArrays& x) {
+  accumulate_coarse_to_fine(x);
+  std::vector<double> found(depths_.size(), 0.0);
+  for (std::size_t l = 0; l <= finest_; ++l)
+    terms_[l].write_residuals(grid_.levels[l], sums_[l], found);
+  return found;
+}
+
+void SsdSystem::aim_at_scattered_mean(const LevelArrays& x) {
+  accumulate_coarse_to_fine(x);
+  for (std::size_t l = 0; l <= finest_; ++l)
+    terms_[l].aim_at_scattered_mean(grid_.levels[l], sums_[l], samples_.sigma);
 }
 
 double SsdSystem::energy(const LevelArrays& x) {

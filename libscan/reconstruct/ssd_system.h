@@ -10,20 +10,14 @@
 
 namespace scan {
 
-struct SsdWeights {
-  double value = 0;
-  double gradient = 0;
-  double smoothness = 0;
-};
-
-// E(x) = sum_i a_i (value f(p_i)^2 + gradient |grad f(p_i) - n_i|^2) + smoothness integral |D^2
-// f|^2 with sum a_i = 1 (Calakli and Taubin 2011, eq. 3-5), f = sum of all levels' splines up to a
-// finest one. Half its gradient is A x - b. A is semidefinite: levels repeat each other's
-// functions.
+// E(x) = sum_i (v_i f(p_i)^2 + g_i |grad f(p_i) - n_i|^2) + integral |D^2 f|^2 (Calakli and Taubin
+// 2011, eq. 3-5), f = sum of all levels' splines up to a finest one. Half its gradient is A x - b.
+// A is semidefinite: levels repeat each other's functions.
 class SsdSystem {
  public:
   // Keeps references: grid and samples must live as long.
-  SsdSystem(const OctreeGrid& grid, const Samples& samples, const SsdWeights& weights);
+  SsdSystem(const OctreeGrid& grid, const Samples& samples, SampleWeights weights);
+  void set_weights(SampleWeights weights);
 
   // From now on only levels 0 ... `finest` act; deeper samples are seen by that level.
   void use_levels(std::size_t finest);
@@ -32,11 +26,16 @@ class SsdSystem {
   // y = A x; arrays of active blocks, as from active_arrays().
   void multiply(const LevelArrays& x, LevelArrays& y) { multiply(x, y, true); }
   LevelArrays right_side();
-  // Of A; 1 where a row is empty (functions outside the cube).
+  // Of A, levels in use; 1 where a row is empty (functions outside the cube).
   LevelArrays diagonal() const;
   // The coarsest level's functions that lie in the cube, and the block of A for these, dense.
   std::vector<std::uint32_t> coarsest_functions() const;
   Eigen::MatrixXd coarsest_matrix() const;
+  // Per sample: f / |grad f|, to first order the distance to the zero set.
+  std::vector<double> residuals(const LevelArrays& x);
+  // From now on aims at f = sigma^2 / 2 times the Laplacian of x at each sample, not at f = 0: that
+  // is what samples of the surface, scattered by sigma in all directions, find there on average.
+  void aim_at_scattered_mean(const LevelArrays& x);
   double energy(const LevelArrays& x);
 
  private:
@@ -46,8 +45,7 @@ class SsdSystem {
   const OctreeGrid& grid_;
   const Samples& samples_;
   std::vector<int> depths_;
-  SsdWeights weights_;
-  std::vector<double> area_;
+  SampleWeights weights_;
   std::size_t finest_ = 0;
   std::vector<BendingStencil> bending_;
   std::vector<SampleTerm> terms_;

@@ -17,7 +17,13 @@ std::string_view name_of(SolveStop stop);
 struct SurfaceResult {
   Mesh surface;
   std::vector<double> support_m;  // per vertex: distance to the nearest data point
+  // Per vertex: one standard deviation across the surface, from the points' scatter and the
+  // smoothing; of the surface beside the nearest point. Empty: the method does not know.
+  std::vector<double> standard_error_m;
   double finest_cell_m = 0;
+  int depth = 0;                  // of the solution's finest cells
+  double sigma_m = 0;             // scatter of the points, median; given or estimated
+  double smoothing_length_m = 0;  // median; ripples of 2 pi times this are halved
   std::size_t unknowns = 0;
   int iterations = 0;
   double relative_residual = 0;

@@ -14,10 +14,15 @@ namespace {
 void keep_only(SurfaceResult& result, const std::vector<char>& keep) {
   std::vector<std::uint32_t> vertex_of;
   result.surface = kept_triangles(result.surface, keep, vertex_of);
-  std::vector<double> support;
-  support.reserve(vertex_of.size());
-  for (const std::uint32_t v : vertex_of) support.push_back(result.support_m[v]);
-  result.support_m = std::move(support);
+  const auto keep_of = [&](std::vector<double>& values) {
+    if (values.empty()) return;
+    std::vector<double> kept;
+    kept.reserve(vertex_of.size());
+    for (const std::uint32_t v : vertex_of) kept.push_back(values[v]);
+    values = std::move(kept);
+  };
+  keep_of(result.support_m);
+  keep_of(result.standard_error_m);
 }
 
 std::vector<char> large_components(const Mesh& mesh, double min_fraction) {

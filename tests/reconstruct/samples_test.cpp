@@ -53,10 +53,13 @@ TEST(Samples, GiveAStrayPointNoMoreWeightThanOthers) {
 
 TEST(SampleDepths, FollowTheSpacing) {
   Samples samples;
-  samples.points.resize(3);
-  samples.area = {1.0 / 4096, 1.0 / 4097, 1e-30};
-  // Cells of width sqrt(4 / 4096) = 1/32, and slightly less.
-  EXPECT_EQ(sample_depths(samples, 4, 3, 12), (std::vector<int>{5, 5, 12}));
+  samples.points.resize(4);
+  samples.area = {1.0 / 4096, 1.0 / 4096, 1.0 / 4097, 1.0 / 500};
+  samples.sigma = {0, 1.001 / 32, 0, 0};
+  // Cells of width 1 / 64, 1 / 64 + 1.5 / 32 = 1 / 16, slightly below the first, and 1 / 22; the
+  // smallest area is that of a twentieth.
+  EXPECT_EQ(sample_depths(samples, 3, 12), (std::vector<int>{6, 3, 6, 4}));
+  EXPECT_EQ(sample_depths(samples, 5, 5), (std::vector<int>{5, 5, 5, 5}));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "libscan/core/point_cloud.h"
 #include "libscan/core/random.h"
+#include "libscan/reconstruct/sample_term.h"
 
 namespace scan {
 
@@ -36,6 +37,26 @@ inline PointCloud torus_cloud(std::size_t count, double major_m = 1, double mino
     cloud.points.push_back(major_m * ring + minor_m * cloud.normals.back());
   }
   return cloud;
+}
+
+// Moved by sigma in each coordinate; the normals stay.
+inline PointCloud scattered(PointCloud cloud, double sigma_m, std::uint64_t seed = 3) {
+  RandomStream random(seed, 0, 0);
+  for (auto& point : cloud.points)
+    for (int a = 0; a < 3; ++a) point[a] += sigma_m * random.normal();
+  return cloud;
+}
+
+// Sums of `value` and `gradient`, shared out by area.
+inline SampleWeights even_weights(const Samples& samples, double value, double gradient) {
+  double total = 0;
+  for (const double area : samples.area) total += area;
+  SampleWeights weights;
+  for (const double area : samples.area) {
+    weights.value.push_back(value * area / total);
+    weights.gradient.push_back(gradient * area / total);
+  }
+  return weights;
 }
 
 }  // namespace scan

@@ -36,7 +36,7 @@ TEST(SsdSolver, FindsTheFunctionOfADirectSolution) {
   for (const auto& u : samples.points) depths.push_back(u[0] > 0.75 && u[1] > 0.5 ? 4 : 3);
   const OctreeGrid grid = make_octree_grid(samples.points, depths, 3);
   ASSERT_EQ(grid.levels.size(), 2u);
-  SsdSystem system(grid, samples, {50, 5e-4, 1e-5});
+  SsdSystem system(grid, samples, even_weights(samples, 5e6, 50));
   const SsdSolution iterated = solve(system, grid, 1e-9, 5000);
   ASSERT_EQ(iterated.stop, SolveStop::converged);
   EXPECT_LE(iterated.relative_residual, 1.01e-9);
@@ -64,7 +64,7 @@ TEST(SsdSolver, FindsTheFunctionOfADirectSolution) {
 TEST(SsdSolver, SaysWhenItStopsEarly) {
   const Samples samples = prepare_samples(torus_cloud(2000));
   const OctreeGrid grid = make_octree_grid(samples.points, std::vector<int>(2000, 5), 4);
-  SsdSystem system(grid, samples, {50, 5e-4, 1e-5});
+  SsdSystem system(grid, samples, even_weights(samples, 5e6, 50));
   const SsdSolution solution = solve(system, grid, 1e-12, 5);
   EXPECT_EQ(solution.stop, SolveStop::iteration_limit);
   EXPECT_EQ(solution.iterations, 5);

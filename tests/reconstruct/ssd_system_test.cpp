@@ -19,7 +19,6 @@ namespace {
 struct Problem {
   Samples samples = prepare_samples(torus_cloud(600));
   OctreeGrid grid;
-  SsdWeights weights{50, 5e-4, 1e-5};
 
   Problem() {
     std::vector<int> depths;
@@ -51,9 +50,10 @@ double dot(const LevelArrays& a, const LevelArrays& b) {
 
 TEST(SsdSystem, EnergyIsThatOfTheFieldAtTheSamples) {
   Problem problem;
-  problem.weights.smoothness = 0;
-  SsdSystem system(problem.grid, problem.samples, problem.weights);
+  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 0, 0));
   const LevelArrays x = random_arrays(problem.grid, 1);
+  const double bending = system.energy(x);
+  system.set_weights(even_weights(problem.samples, 5e13, 5e9));
   const SplineField field{problem.grid, x};
   double expected = 0;
   const double total =
@@ -62,10 +62,11 @@ TEST(SsdSystem, EnergyIsThatOfTheFieldAtTheSamples) {
     const FieldValue f = evaluate(field, problem.samples.points[i]);
     expected +=
         problem.samples.area[i] / total *
-        (50 * f.value * f.value + 5e-4 * (f.gradient - problem.samples.normals[i]).squaredNorm());
+        (5e13 * f.value * f.value + 5e9 * (f.gradient - problem.samples.normals[i]).squaredNorm());
   }
   // A few thousand terms of one sign: relative rounding far below 1e-11.
-  EXPECT_NEAR(system.energy(x), expected, 1e-11 * expected);
+  EXPECT_NEAR(system.energy(x) - bending, expected, 1e-11 * (expected + bending));
+  EXPECT_GT(expected, bending);
 }
 
 // |D^2 f|^2 by quadrature: in each finest cell of any place the function is one polynomial of
@@ -73,8 +74,7 @@ TEST(SsdSystem, EnergyIsThatOfTheFieldAtTheSamples) {
 // exact.
 TEST(SsdSystem, SmoothnessIsTheIntegralOverTheCube) {
   Problem problem;
-  problem.weights = {0, 0, 1};
-  SsdSystem system(problem.grid, problem.samples, problem.weights);
+  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 0, 0));
   const LevelArrays x = random_arrays(problem.grid, 2);
   const SplineField field{problem.grid, x};
   const auto second = [&](const FieldCell& cell, const Eigen::Vector3d& t) {
@@ -113,7 +113,7 @@ TEST(SsdSystem, SmoothnessIsTheIntegralOverTheCube) {
 
 TEST(SsdSystem, HalfTheGradientIsTheResidual) {
   Problem problem;
-  SsdSystem system(problem.grid, problem.samples, problem.weights);
+  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
   const LevelArrays x = random_arrays(problem.grid, 3), direction = random_arrays(problem.grid, 4);
   LevelArrays product = active_arrays(problem.grid);
   system.multiply(x, product);
@@ -131,7 +131,7 @@ TEST(SsdSystem, HalfTheGradientIsTheResidual) {
 
 TEST(SsdSystem, IsSymmetric) {
   Problem problem;
-  SsdSystem system(problem.grid, problem.samples, problem.weights);
+  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
   const LevelArrays x = random_arrays(problem.grid, 5), y = random_arrays(problem.grid, 6);
   LevelArrays ax = active_arrays(problem.grid), ay = ax;
   system.multiply(x, ax);
@@ -142,7 +142,7 @@ TEST(SsdSystem, IsSymmetric) {
 
 TEST(SsdSystem, KnowsItsDiagonalAndItsCoarsestMatrix) {
   Problem problem;
-  SsdSystem system(problem.grid, problem.samples, problem.weights);
+  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
   const LevelArrays diagonal = system.diagonal();
   const Eigen::MatrixXd coarsest = system.coarsest_matrix();
   const std::vector<std::uint32_t> functions = system.coarsest_functions();

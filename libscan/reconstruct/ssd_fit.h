@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// The SSD function of scattered samples: as smooth as their noise asks for, region by region.
+#pragma once
+
+#include "libscan/core/progress.h"
+#include "libscan/reconstruct/ssd_solver.h"
+
+namespace scan {
+
+struct SsdFit {
+  SsdSolution solution;
+  std::vector<double> length;  // smoothing length at each sample, unit cube
+};
+
+struct SsdFitOptions {
+  double length = 0;  // least smoothing length, unit cube; 0: chosen
+  double relative_residual = 5e-3;
+  int max_iterations = 2000;
+};
+
+// The samples' weights for a smoothing length at each (local_smoothing.h): value 4 area / length^3,
+// gradient a tenth of that times length^2. With these the weight of the smoothness is one, at any
+// scale and density.
+SampleWeights smoothing_weights(const Samples& samples, const std::vector<double>& length);
+
+// From the coarsest level to the finest: each is solved with a smoothing length in step with its
+// cells, and keeps it in the regions where that lowers the risk; past the finest level the length
+// alone goes on. Then all is solved once more for the lengths found.
+SsdFit fit_surface(const OctreeGrid& grid, const Samples& samples, const SsdFitOptions& options,
+                   const Progress& progress = {});
+
+}  // namespace scan
