@@ -7,72 +7,21 @@
 #include <tuple>
 
 #include "libscan/core/parallel.h"
+#include "libscan/reconstruct/cell_weights.h"
 
 namespace scan {
 namespace {
 
-constexpr int cube_width = block_cell_functions;
 constexpr int cube_size = cube_width * cube_width * cube_width;
 constexpr std::size_t buckets_per_task = 4;
 
-struct CellWeights {
-  SplineWeights x, y, z;
-};
-
-CellWeights weights_at(const Eigen::Vector3d& in_cell) {
-  return {spline_weights(in_cell[0]), spline_weights(in_cell[1]), spline_weights(in_cell[2])};
-}
-
-struct ValueAndSlope {
-  double value = 0;
-  Eigen::Vector3d slope = Eigen::Vector3d::Zero();  // per cell width
-};
-
-ValueAndSlope evaluate(const double* cube, const CellWeights& w) {
-  ValueAndSlope f;
-  for (int c = 0; c < 3; ++c)
-    for (int b = 0; b < 3; ++b) {
-      const int first = cube_width * (b + cube_width * c);
-      const double* q = cube + first;
-      const double value = w.x.value[0] * q[0] + w.x.value[1] * q[1] + w.x.value[2] * q[2];
-      const double slope = w.x.slope[0] * q[0] + w.x.slope[1] * q[1] + w.x.slope[2] * q[2];
-      f.value += w.y.value[b] * w.z.value[c] * value;
-      f.slope[0] += w.y.value[b] * w.z.value[c] * slope;
-      f.slope[1] += w.y.slope[b] * w.z.value[c] * value;
-      f.slope[2] += w.y.value[b] * w.z.slope[c] * value;
-    }
-  return f;
-}
-
-// Of the second derivatives, per square of the cell's width.
-double laplacian(const double* cube, const CellWeights& w) {
-  constexpr std::array<double, 3> second = {1, -2, 1};
-  double sum = 0;
-  for (int c = 0; c < 3; ++c)
-    for (int b = 0; b < 3; ++b)
-      for (int a = 0; a < 3; ++a)
-        sum += cube[a + cube_width * (b + cube_width * c)] *
-               (second[a] * w.y.value[b] * w.z.value[c] + w.x.value[a] * second[b] * w.z.value[c] +
-                w.x.value[a] * w.y.value[b] * second[c]);
-  return sum;
-}
-
-// Adds value * B + slope . grad B of the cell's 27 functions B (the transpose of evaluate).
-void accumulate(double* cube, const CellWeights& w, const ValueAndSlope& f) {
-  for (int c = 0; c < 3; ++c)
-    for (int b = 0; b < 3; ++b) {
-      const int first = cube_width * (b + cube_width * c);
-      double* q = cube + first;
-      const double by_value = f.value * w.y.value[b] * w.z.value[c] +
-                              f.slope[1] * w.y.slope[b] * w.z.value[c] +
-                              f.slope[2] * w.y.value[b] * w.z.slope[c];
-      const double by_slope = f.slope[0] * w.y.value[b] * w.z.value[c];
-      for (int a = 0; a < 3; ++a) q[a] += by_value * w.x.value[a] + by_slope * w.x.slope[a];
-    }
-}
-
 BlockPlace cell_at(const Eigen::Vector3d& u, int cells) {
   return {cell_of(u[0], cells), cell_of(u[1], cells), cell_of(u[2], cells)};
+}
+
+// Of a cell's functions in its block's cube.
+int cube_corner(const BlockPlace& cell) {
+  return cell[0] % 4 + cube_width * (cell[1] % 4 + cube_width * (cell[2] % 4));
 }
 
 using CellMatrix = Eigen::Matrix<double, 27, 27>;
@@ -119,8 +68,7 @@ void add_sample_diagonal(const BlockLevel& level, const Samples& samples,
     const std::int32_t block = level.find({cell[0] / 4, cell[1] / 4, cell[2] / 4});
     const CellWeights w =
         weights_at(samples.points[i] * cells - Eigen::Vector3d(cell[0], cell[1], cell[2]));
-    const std::array<Eigen::Index, 27> at = cell_functions(
-        level, block, cell[0] % 4 + cube_width * (cell[1] % 4 + cube_width * (cell[2] % 4)));
+    const std::array<Eigen::Index, 27> at = cell_functions(level, block, cube_corner(cell));
     for (int k = 0; k < 27; ++k) {
       const int a = k % 3, b = k / 3 % 3, c = k / 9;
       const double value = square(w.x.value[a] * w.y.value[b] * w.z.value[c]);
@@ -162,9 +110,8 @@ SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
     const Eigen::Vector3d& u = samples.points[at.sample];
     const Eigen::Vector3d& normal = samples.normals[at.sample];
     const BlockPlace cell = cell_at(u, level.cells());
-    const int x = at.cell % 4, y = at.cell / 4 % 4, z = at.cell / 16;
     placed_.push_back({u * cells_ - Eigen::Vector3d(cell[0], cell[1], cell[2]), normal, 0, 0, 0,
-                       at.sample, x + cube_width * (y + cube_width * z)});
+                       at.sample, cube_corner(cell)});
   }
   bucket_begin_.push_back(static_cast<std::uint32_t>(placed_.size()));
   set_weights(weights);
