@@ -25,6 +25,11 @@ Scene wall() {
   return {.objects = {plane_at(1.5, 0.3)}, .materials = {plain(0.6)}};
 }
 
+void print(Effect effect, double bound_m, double error_m) {
+  std::printf("bound: %-24s %9.4g mm, error %.4g mm, %.2f of it\n",
+              std::string(name(effect)).c_str(), bound_m * 1e3, error_m * 1e3, error_m / bound_m);
+}
+
 Weight weight_of(const PhaseCamera& camera, const Scene& scene, Effect effect) {
   const auto rays = pilot(camera, RayCaster(scene), Pose::Identity(), 48 * 32);
   const Weighed weighed = weigh(camera, scene, effect, rays);
@@ -48,6 +53,7 @@ TEST(PhaseBounds, OfNoiseAreThreeSigma) {
     std::sort(moved_m.begin(), moved_m.end());
     // 2.58 sigma of the mean pixel, whose sigma is less than the largest
     const double most_m = moved_m[moved_m.size() * 99 / 100];
+    print(effect, weight.bound_m, most_m);
     EXPECT_LE(most_m, weight.bound_m) << name(effect);
     EXPECT_GE(most_m, weight.bound_m / 10) << name(effect);
   }
@@ -64,6 +70,7 @@ void expect_sigma_bound(const PhaseCamera& device, const Scene& scene, Effect ef
     changes_m.push_back(3 * (with.cloud.sigma_m[i] - without.cloud.sigma_m[i]));
   std::sort(changes_m.begin(), changes_m.end());
   const double most_m = changes_m[changes_m.size() * 99 / 100];
+  print(effect, weight.bound_m, most_m);
   // the decoder tells its sigma by one reading of the amplitude, good to some per cent here
   EXPECT_LE(most_m, 1.05 * weight.bound_m) << name(effect);
   EXPECT_GE(most_m, weight.bound_m / 10) << name(effect);
@@ -99,6 +106,7 @@ TEST(PhaseBounds, OfAMirrorIsReachedByAGhost) {
   for (std::size_t i = 0; i < seen.ray.size(); ++i)
     most_m = std::max(most_m, (seen.cloud.points[i] - truth[seen.ray[i]].point_in_scanner).norm());
   const double bound_m = weight_of(device, scene, Effect::mirror_reflection).bound_m;
+  print(Effect::mirror_reflection, bound_m, most_m);
   EXPECT_LE(most_m, bound_m);
   EXPECT_GE(most_m, bound_m / 10);
 }

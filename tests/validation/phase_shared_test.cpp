@@ -17,38 +17,41 @@ PhaseCamera corner_camera() {
   s.camera = {.width_px = 24, .height_px = 24, .fx_px = 250, .fy_px = 250};
   s.camera.cx_px = 11.5 - 250 * middle.x() / middle.z();
   s.camera.cy_px = 11.5;
-  s.frequencies_hz = {80e6};
+  s.frequencies_hz = {80e6, 20e6};
   s.electrons_at_1m = 60000;
   s.sensor.full_well_e = 200000;
   return s;
 }
 
-struct Pixel {
-  Phasor direct;    // of the device's light, with the way
-  Phasor indirect;  // by quadrature
+struct Pixel {                     // by frequency
+  std::array<Phasor, 2> direct;    // of the device's light, with the way
+  std::array<Phasor, 2> indirect;  // by quadrature
   double constant_e = 0;
 };
 
 // By the intersection of the pixel's ray with the plane of the left wall.
 std::vector<Pixel> corner_pixels(const PhaseCamera& s, double albedo) {
-  const double k = per_m(80e6) / 2;
   std::vector<Pixel> pixels;
   for (std::size_t i = 0; i < 24 * 24; ++i) {
     const auto [column, row] = place_of(i, 24);
     const Eigen::Vector3d toward((column - s.camera.cx_px) / 250, (row - s.camera.cy_px) / 250, 1);
     const Eigen::Vector3d x = toward * left.normal.dot(edge) / left.normal.dot(toward);
     const double u_m = (x - edge).dot(left.along);
-    const Phasor all = corner_phasor(s, 80e6, albedo, u_m, x.y());
-    const double direct_e =
-        albedo * s.electrons_at_1m * -left.normal.dot(x) / std::pow(x.norm(), 3);
-    const Phasor direct = s.contrast * direct_e * std::polar(1.0, 2 * k * x.norm());
-    pixels.push_back({direct, all - direct, direct_e});
+    Pixel pixel{.constant_e =
+                    albedo * s.electrons_at_1m * -left.normal.dot(x) / std::pow(x.norm(), 3)};
+    for (std::size_t f = 0; f < 2; ++f) {
+      const double frequency_hz = s.frequencies_hz[f];
+      pixel.direct[f] =
+          s.contrast * pixel.constant_e * std::polar(1.0, per_m(frequency_hz) * x.norm());
+      pixel.indirect[f] = corner_phasor(s, frequency_hz, albedo, u_m, x.y()) - pixel.direct[f];
+    }
+    pixels.push_back(pixel);
   }
   return pixels;
 }
 
 struct Errors {
-  double square = 0;          // of the phasors, over a tap's variance
+  double square = 0;          // of a phasor, over a tap's variance
   double square_of_mean = 0;  // of the mean over all repetitions
   double stated = 0;          // of taps
   double paths = 0;           // per pixel
@@ -61,21 +64,21 @@ Errors errors_over(int repetitions) {
   const LightTransport transport(caster, {.most_scatterings = 2});
   const std::vector<Pixel> pixels = corner_pixels(s, albedo);
   const std::vector<Tone> tones = tones_of(s);
-  std::vector<Phasor> mean(pixels.size());
+  std::vector<Phasor> mean(2 * pixels.size());
   Errors errors;
   const double share = 1.0 / (repetitions * 576);
   for (int seed = 0; seed < repetitions; ++seed) {
     const PathView view{
         s, transport, Pose::Identity(), {}, {.seed = static_cast<std::uint64_t>(seed), .scan = 0}};
     std::vector<double> constant(pixels.size());
-    std::vector<Phasor> phasor(pixels.size());
+    std::vector<Phasor> phasor;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       constant[i] = pixels[i].constant_e;
-      phasor[i] = pixels[i].direct;
+      phasor.insert(phasor.end(), pixels[i].direct.begin(), pixels[i].direct.end());
     }
     const LightOf light_of = [&](const PixelPlace& place) {
       const std::size_t i = index_of(place, 24);
-      return LightSum{constant[i], std::span(phasor).subspan(i, 1)};
+      return LightSum{constant[i], std::span(phasor).subspan(2 * i, 2)};
     };
     const RayOf ray = [](const PixelPlace& place) { return index_of(place, 24); };
     const auto patches = patches_of(view, {0, 0}, [](const PixelPlace&) { return true; });
@@ -84,15 +87,17 @@ Errors errors_over(int repetitions) {
     for (const SharedPixel& one : done) {
       const std::size_t i = index_of(one.place, 24);
       const double variance_e2 = tap_variance_e2(s.sensor, constant[i]);
-      const Phasor error =
-          (phasor[i] - pixels[i].direct - pixels[i].indirect) / std::sqrt(variance_e2);
-      mean[i] += error / (1.0 * repetitions);
-      errors.square += share * std::norm(error);
+      for (std::size_t f = 0; f < 2; ++f) {
+        const Phasor error = (phasor[2 * i + f] - pixels[i].direct[f] - pixels[i].indirect[f]) /
+                             std::sqrt(variance_e2);
+        mean[2 * i + f] += error / (1.0 * repetitions);
+        errors.square += share / 2 * std::norm(error);
+      }
       errors.stated += share * std::pow(one.taps.standard_error[0], 2) / variance_e2;
       errors.paths += share * one.taps.samples;
     }
   }
-  for (const Phasor& error : mean) errors.square_of_mean += std::norm(error) / 576;
+  for (const Phasor& error : mean) errors.square_of_mean += std::norm(error) / 1152;
   return errors;
 }
 
