@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much an effect can move a range: what the planner asks each scanner.
 //
-// For each scanner two functions, in synth/effects/weigh_<scanner>.cpp:
+// For each scanner two functions, in synth/effects/pilot_<scanner>.cpp and weigh_<scanner>.cpp:
 //   pilot(): a few thousand of the scanner's rays, spread over a view, with what they meet;
 //   weigh(): the bound of one effect, from closed forms of the scanner's physics at those rays.
 #pragma once

@@ -90,11 +90,11 @@ TEST(PhaseBounds, OfSceneLightsIsThatOfTheirNoise) {
   expect_sigma_bound(device, scene, Effect::scene_lights);
 }
 
-// A mirror at 1 m turns the view to a wall 1.5 m beside it: the ghost is 1.5 m behind the mirror,
-// of 3 m that the camera tells apart.
+// A mirror at 0.6 m turns the view to a wall 1.5 m beside it: the ghost is 1.5 m behind the mirror,
+// farther than the mirror itself and half of the 3 m that the camera tells apart.
 TEST(PhaseBounds, OfAMirrorIsReachedByAGhost) {
   const PhaseCamera device = camera();
-  Scene scene{.objects = {plane_at(1, std::numbers::pi / 4), plane_at(0, 0, 1)},
+  Scene scene{.objects = {plane_at(0.6, std::numbers::pi / 4), plane_at(0, 0, 1)},
               .materials = {{.name = "mirror", .bsdf = Conductor{.roughness = 0}, .texture = {}},
                             plain(0.5)}};
   const Eigen::AngleAxisd sideways(std::numbers::pi / 2, Eigen::Vector3d::UnitY());
