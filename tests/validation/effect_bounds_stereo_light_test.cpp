@@ -185,5 +185,13 @@ TEST(StereoWays, ThroughFogHaveTheNoiseOfItsVeil) {
   expect_sigma_change("fog", pair, scene, Effect::medium);
 }
 
+// Smoke adds no veil: what it takes of the light is all.
+TEST(StereoWays, ThroughSmokeHaveTheNoiseOfWeakerLight) {
+  const StereoPair pair = pair_of_100_px();
+  Scene scene = printed_plane(0.2);
+  scene.medium = Medium{.absorption_per_m = 1};
+  expect_sigma_change("smoke", pair, scene, Effect::medium);
+}
+
 }  // namespace
 }  // namespace scan::synth
