@@ -12,6 +12,7 @@
 #include "libscan/io/truth_file.h"
 #include "libscan/verify/disparity_error.h"
 #include "libscan/verify/pose_error.h"
+#include "libscan/verify/size_error.h"
 #include "libscan/verify/surface_error.h"
 #include "tools/commands.h"
 #include "tools/inputs.h"
@@ -29,6 +30,10 @@ struct Arguments {
   std::string limits;
   std::string picture;
 };
+
+void add(std::vector<Measurement>& to, std::vector<Measurement> more) {
+  for (Measurement& measurement : more) to.push_back(std::move(measurement));
+}
 
 bool is_disparity(const std::string& path) {
   return std::filesystem::path(path).extension() == ".pfm";
@@ -76,7 +81,9 @@ std::vector<Measurement> measure_poses(const Arguments& arguments,
       points.push_back(world_from_scanner.inverse() *
                        box.corner(static_cast<Bounds::CornerType>(corner)));
   }
-  return summarise(pose_errors(estimated, truth, felt));
+  auto figures = summarise(pose_errors(estimated, truth, felt));
+  add(figures, summarise_relative(relative_pose_errors(estimated, truth, felt)));
+  return figures;
 }
 
 void write_picture(const std::string& path, const Mesh& mesh, const TrueSurface& truth) {
@@ -101,7 +108,8 @@ std::vector<Measurement> measure_files(const Arguments& arguments, Console& cons
   if (holds_triangles(arguments.measured)) {
     const Mesh mesh = read_mesh(arguments.measured);
     measurements = surface_error(mesh, truth, options);
-    for (Measurement& measurement : topology(mesh)) measurements.push_back(std::move(measurement));
+    add(measurements, size_error(mesh, truth));
+    add(measurements, topology(mesh));
     if (!arguments.picture.empty()) write_picture(arguments.picture, mesh, truth);
     points = mesh.vertices;
   } else {
@@ -109,9 +117,8 @@ std::vector<Measurement> measure_files(const Arguments& arguments, Console& cons
     measurements = cloud_error(scan.cloud, truth, options);
     points = scan.cloud.points;
   }
-  if (!arguments.poses.empty())
-    for (Measurement& measurement : measure_poses(arguments, points, console))
-      measurements.push_back(std::move(measurement));
+  warn_of_other_frame(arguments.measured, bounds_of(points), bounds_of(truth), console);
+  if (!arguments.poses.empty()) add(measurements, measure_poses(arguments, points, console));
   return measurements;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// Least-squares (Gauss) fits of sphere, plane, cylinder, cone and torus, as artefact tests use them.
+// Least-squares (Gauss) fits of sphere, plane, cylinder, cone and torus, as artefact tests use
+// them.
 #pragma once
 
 #include <span>
@@ -15,8 +16,8 @@ struct SphereFit {
   double rms_m = 0;
 };
 struct PlaneFit {
-  Eigen::Vector3d point_m;   // the centroid
-  Eigen::Vector3d normal;    // unit
+  Eigen::Vector3d point_m;  // the centroid
+  Eigen::Vector3d normal;   // unit
   double rms_m = 0;
 };
 

@@ -88,8 +88,7 @@ Eigen::MatrixXd jacobian(const Eigen::MatrixX3d& x, const Placed& placed) {
     const Profile p = Surface::at(rho, z, placed.size);
     j.row(i).head<2>() = -p.d_rho * out;
     j.row(i).segment<2>(2) = out * (rho * p.d_z - z * p.d_rho);
-    j.row(i).template segment<Surface::sizes>(4) =
-        p.by_size.head<Surface::sizes>().transpose();
+    j.row(i).template segment<Surface::sizes>(4) = p.by_size.head<Surface::sizes>().transpose();
     if (Surface::has_height) j(i, 4 + Surface::sizes) = -p.d_z;
   }
   return j;
@@ -127,8 +126,8 @@ Placed minimise(const Eigen::MatrixX3d& x, Placed placed) {
     placed = next;
     d = next_d;
   }
-  throw Error(Trouble::computation, std::string(Surface::name) +
-                                        " fit: no minimum found from the guess of the axis");
+  throw Error(Trouble::computation,
+              std::string(Surface::name) + " fit: no minimum found from the guess of the axis");
 }
 
 // The guess in the scaled frame, its point moved beside the centroid (not for a torus).

@@ -17,6 +17,10 @@
 namespace scan {
 namespace {
 
+constexpr double widest_share = 0.01;
+constexpr double least_share = 1e-6;  // of the diagonal: errors below it need no digits
+constexpr std::size_t most_doublings = 3;
+
 using DistanceTo = std::function<double(const Eigen::Vector3d&)>;
 
 // What is compared: points with normals (or none) that stand for the measured surface, and the
@@ -25,7 +29,8 @@ struct Measured {
   std::vector<Eigen::Vector3d> points = {};
   std::vector<Eigen::Vector3d> normals = {};  // (0,0,0): unknown
   DistanceTo distance_m;
-  std::string over;  // what `points` are
+  std::string over;             // what `points` are
+  Values values = Values::all;  // whether they are all there is
   Bounds bounds;
 };
 
@@ -117,6 +122,16 @@ Measurement f_score(const std::vector<double>& accuracy_m,
           .count = accuracy_m.size() + completeness_m.size()};
 }
 
+// Of the two surfaces, from below: the farthest sample of either.
+Measurement hausdorff(const std::vector<double>& accuracy_m,
+                      const std::vector<double>& completeness_m) {
+  return {.name = "hausdorff",
+          .value = std::max(quantile(accuracy_m, 1), quantile(completeness_m, 1)),
+          .unit = "m",
+          .over = "the farthest sample of either surface from the other",
+          .count = accuracy_m.size() + completeness_m.size()};
+}
+
 std::vector<Measurement> compare(const Measured& measured, const TrueSurface& truth,
                                  const SurfaceErrorOptions& options) {
   const Accuracy accuracy = accuracy_of(measured, truth);
@@ -126,20 +141,35 @@ std::vector<Measurement> compare(const Measured& measured, const TrueSurface& tr
                                                              : default_threshold_m(truth_samples);
   const auto completeness_m = completeness_of(measured, seen_only(truth_samples, options));
 
-  auto figures = summary("accuracy", accuracy.errors_m, "m", measured.over);
+  auto figures = summary("accuracy", accuracy.errors_m, "m", measured.over, measured.values);
   const auto other_way =
       summary("completeness", completeness_m, "m",
               options.seen_points.empty() ? "samples of the true surface, uniform by area"
-                                          : "samples of the true surface near seen points");
+                                          : "samples of the true surface near seen points",
+              Values::drawn);
   figures.insert(figures.end(), other_way.begin(), other_way.end());
+  figures.push_back(hausdorff(accuracy.errors_m, completeness_m));
   figures.push_back(f_score(accuracy.errors_m, completeness_m, threshold_m));
   if (!accuracy.normal_errors_rad.empty())
     figures.push_back({.name = "normal_error_mean",
                        .value = mean(accuracy.normal_errors_rad),
                        .unit = "rad",
                        .over = measured.over,
-                       .count = accuracy.normal_errors_rad.size()});
+                       .count = accuracy.normal_errors_rad.size(),
+                       .interval = measured.values == Values::drawn
+                                       ? mean_interval(accuracy.normal_errors_rad)
+                                       : std::nullopt});
   return figures;
+}
+
+// Whether the means of both ways are known to `widest_share` of themselves, or of what matters.
+bool is_settled(const std::vector<Measurement>& figures, double diagonal_m) {
+  return std::none_of(figures.begin(), figures.end(), [&](const Measurement& m) {
+    const bool is_mean = m.name == "accuracy_mean" || m.name == "completeness_mean";
+    const double matters_m = std::max(std::abs(m.value), least_share * diagonal_m);
+    return is_mean && m.interval &&
+           m.interval->high - m.interval->low > 2 * widest_share * matters_m;
+  });
 }
 
 void check_options(const SurfaceErrorOptions& options) {
@@ -158,15 +188,26 @@ std::vector<Measurement> surface_error(const Mesh& mesh, const TrueSurface& trut
   check(mesh);
   if (mesh.empty()) throw Error(Trouble::input, "measured surface: no triangles");
   const MeshSearch search(mesh);
-  Measured measured{
-      .distance_m = [&](const Eigen::Vector3d& x) { return search.closest(x).distance_m; },
-      .over = "samples of the measured surface, uniform by area",
-      .bounds = bounds_of(mesh.vertices)};
-  for (const SurfaceSample& sample : sample_surface(mesh, options.samples, options.seed)) {
-    measured.points.push_back(sample.point);
-    measured.normals.push_back(sample.normal);
-  }
-  return compare(measured, truth, options);
+  const Bounds bounds = bounds_of(mesh.vertices);
+  const auto with_samples = [&](std::size_t samples) {
+    Measured measured{
+        .distance_m = [&](const Eigen::Vector3d& x) { return search.closest(x).distance_m; },
+        .over = "samples of the measured surface, uniform by area",
+        .values = Values::drawn,
+        .bounds = bounds};
+    for (const SurfaceSample& sample : sample_surface(mesh, samples, options.seed)) {
+      measured.points.push_back(sample.point);
+      measured.normals.push_back(sample.normal);
+    }
+    SurfaceErrorOptions with = options;
+    with.samples = samples;
+    return compare(measured, truth, with);
+  };
+  auto figures = with_samples(options.samples);
+  for (std::size_t k = 1; k <= most_doublings && !is_settled(figures, bounds.diagonal().norm());
+       ++k)
+    figures = with_samples(options.samples << k);
+  return figures;
 }
 
 std::vector<Measurement> cloud_error(const PointCloud& cloud, const TrueSurface& truth,

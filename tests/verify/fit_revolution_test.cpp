@@ -46,7 +46,9 @@ Points turned(const std::function<ProfilePoint(double)>& profile, double arc_rad
   return points;
 }
 
-ProfilePoint cylinder(double t) { return {{0.5, 2 * t - 1}, {1, 0}}; }
+ProfilePoint cylinder(double t) {
+  return {{0.5, 2 * t - 1}, {1, 0}};
+}
 ProfilePoint cone(double t) {  // half-angle 20 degrees, radius 0.5 at z = 0
   const double z = 2 * t - 1;
   return {{0.5 + z * std::tan(20 * deg), z}, {std::cos(20 * deg), -std::sin(20 * deg)}};
@@ -72,8 +74,9 @@ double distance_to_axis(const Eigen::Vector3d& x, const Axis& axis) {
 }
 
 // Coordinates at 1e6 m round at 1.2e-10 m; over 600 points of a full turn the parameters' rounding
-// is below one point's, over an arc of 60 degrees the depth of the axis and the radius trade against
-// each other with a factor of about 24 / t^4 = 20 on the mean over 600 points (1/25): 1e-9 in all.
+// is below one point's, over an arc of 60 degrees the depth of the axis and the radius trade
+// against each other with a factor of about 24 / t^4 = 20 on the mean over 600 points (1/25): 1e-9
+// in all.
 class FitFarAway : public testing::TestWithParam<double> {};
 
 TEST_P(FitFarAway, IsExactForACylinder) {
@@ -149,9 +152,8 @@ TEST(FitCylinder, MinimisesOrthogonalDistance) {
                    [&](const Eigen::Vector3d& x) { return distance_to_axis(x, axis) - radius; });
   };
   for (int parameter = 0; parameter < 4; ++parameter)
-    EXPECT_LT(std::abs(vertex([&](double by) {
-                return sum(changed(fit.axis, parameter, by), fit.radius_m);
-              })),
+    EXPECT_LT(std::abs(vertex(
+                  [&](double by) { return sum(changed(fit.axis, parameter, by), fit.radius_m); })),
               1e-6);
   EXPECT_LT(std::abs(vertex([&](double by) { return sum(fit.axis, fit.radius_m + by); })), 1e-6);
   EXPECT_NEAR(fit.rms_m, std::sqrt(sum(fit.axis, fit.radius_m) / 600), 1e-12);
@@ -169,15 +171,14 @@ TEST(FitTorus, MinimisesOrthogonalDistance) {
   };
   const double major = fit.major_radius_m, minor = fit.minor_radius_m;
   for (int parameter = 0; parameter < 4; ++parameter)
-    EXPECT_LT(std::abs(vertex([&](double by) {
-                return sum(changed(fit.axis, parameter, by), major, minor);
-              })),
+    EXPECT_LT(std::abs(vertex(
+                  [&](double by) { return sum(changed(fit.axis, parameter, by), major, minor); })),
               1e-6);
-  EXPECT_LT(std::abs(vertex([&](double by) {
-              return sum({fit.axis.point_m + by * fit.axis.direction, fit.axis.direction}, major,
-                         minor);
-            })),
-            1e-6);
+  EXPECT_LT(
+      std::abs(vertex([&](double by) {
+        return sum({fit.axis.point_m + by * fit.axis.direction, fit.axis.direction}, major, minor);
+      })),
+      1e-6);
   EXPECT_LT(std::abs(vertex([&](double by) { return sum(fit.axis, major + by, minor); })), 1e-6);
   EXPECT_LT(std::abs(vertex([&](double by) { return sum(fit.axis, major, minor + by); })), 1e-6);
 }
@@ -193,9 +194,8 @@ TEST(FitCone, MinimisesOrthogonalDistance) {
   };
   const double angle = fit.half_angle_rad, radius = fit.radius_m;
   for (int parameter = 0; parameter < 4; ++parameter)
-    EXPECT_LT(std::abs(vertex([&](double by) {
-                return sum(changed(fit.axis, parameter, by), angle, radius);
-              })),
+    EXPECT_LT(std::abs(vertex(
+                  [&](double by) { return sum(changed(fit.axis, parameter, by), angle, radius); })),
               1e-6);
   EXPECT_LT(std::abs(vertex([&](double by) { return sum(fit.axis, angle + by, radius); })), 1e-6);
   EXPECT_LT(std::abs(vertex([&](double by) { return sum(fit.axis, angle, radius + by); })), 1e-6);
@@ -208,8 +208,11 @@ TEST(FitRevolution, RefusesPointsThatDoNotTell) {
   EXPECT_THROW(fit_cone(few, z), Error);
   EXPECT_THROW(fit_torus(few, z), Error);
   // one ring of a cylinder leaves its axis free to tilt into a cone or a sphere's
-  const Points ring = turned([](double) { return ProfilePoint{{0.5, 0}, {1, 0}}; }, 360 * deg, 0,
-                             Pose::Identity());
+  const Points ring = turned(
+      [](double) {
+        return ProfilePoint{{0.5, 0}, {1, 0}};
+      },
+      360 * deg, 0, Pose::Identity());
   EXPECT_THROW(fit_cylinder(ring, z), Error);
   EXPECT_THROW(fit_cone(ring, z), Error);
   EXPECT_THROW(fit_torus(ring, z), Error);

@@ -69,6 +69,13 @@ std::string number_of(const ordered_json& value, const std::string& unit) {
   return value.is_number() ? readable_value(value.get<double>(), unit) : "unknown";
 }
 
+// What sampling leaves open of a figure.
+std::string interval_of(const ordered_json& measurement, const std::string& unit) {
+  if (!measurement.contains("interval") || !measurement.at("interval").is_array()) return "";
+  const auto& ends = measurement.at("interval");
+  return number_of(ends.at(0), unit) + " to " + number_of(ends.at(1), unit);
+}
+
 std::string banner(const ordered_json& verdict) {
   if (verdict.is_null()) return "<p class=\"verdict none\">not verified</p>";
   const bool pass = verdict.value("pass", false);
@@ -78,13 +85,15 @@ std::string banner(const ordered_json& verdict) {
 std::string measurement_table(const ordered_json& verdict) {
   std::string html =
       "<h2>Measurements</h2><table><tr><th>figure</th><th class=\"number\">value</th>"
-      "<th class=\"number\">limit</th><th>verdict</th><th>over</th><th>reason of the "
+      "<th class=\"number\">95 % interval</th><th "
+      "class=\"number\">limit</th><th>verdict</th><th>over</th><th>reason of the "
       "limit</th></tr>";
   for (const auto& m : verdict.at("measurements")) {
     const std::string unit = m.value("unit", "");
     const bool limited = m.contains("limit") && m.at("limit").is_number();
     html +=
         "<tr>" + cell(m.value("name", "")) + cell(number_of(m.at("value"), unit), true) +
+        cell(interval_of(m, unit), true) +
         cell(limited ? m.value("relation", "") + " " + number_of(m.at("limit"), unit) : "", true) +
         cell(limited ? (m.value("pass", false) ? "pass" : "FAIL") : "") +
         cell(m.value("over", "") + " (" + std::to_string(m.value("count", 0ul)) + ")") +
