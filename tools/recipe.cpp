@@ -84,6 +84,13 @@ Limit read_limit(JsonReader reader) {
   return limit;
 }
 
+std::vector<Limit> read_limits(JsonReader& reader, const char* key) {
+  std::vector<Limit> limits;
+  if (reader.has(key))
+    for (JsonReader& limit : reader.objects(key)) limits.push_back(read_limit(std::move(limit)));
+  return limits;
+}
+
 ordered_json to_json(const Limit& limit, const std::string& unit) {
   const std::string word = limit.relation == "<="   ? "at_most"
                            : limit.relation == ">=" ? "at_least"
@@ -93,11 +100,19 @@ ordered_json to_json(const Limit& limit, const std::string& unit) {
 
 // The unit's suffix of a figure, by its name.
 std::string unit_suffix(const std::string& name) {
-  if (name.find("normal_error") == 0 || name.find("rotation_error") == 0) return "_rad";
-  for (const char* count : {"components", "boundary_edges", "non_manifold_edges", "genus",
-                            "f_score", "ray_hit_fraction", "normalised_range_error_rms"})
+  for (const char* angle : {"normal_error", "rotation_error", "cylinder_axis_error"})
+    if (name.find(angle) != std::string::npos) return "_rad";
+  for (const char* count :
+       {"components", "boundary_edges", "non_manifold_edges", "genus", "f_score",
+        "ray_hit_fraction", "normalised_range_error_rms", "area_error", "volume_error"})
     if (name == count) return "";
   return "_m";
+}
+
+ordered_json to_json(const std::vector<Limit>& limits) {
+  ordered_json list = ordered_json::array();
+  for (const Limit& limit : limits) list.push_back(to_json(limit, unit_suffix(limit.name)));
+  return list;
 }
 
 void check_settings(const Recipe& recipe, const std::string& place) {
@@ -107,6 +122,7 @@ void check_settings(const Recipe& recipe, const std::string& place) {
     check(recipe.align.icp);
     check(recipe.reconstruct.ssd);
     check(recipe.effects);
+    if (recipe.artefacts) check(*recipe.artefacts);
     check_standing(recipe.scene.scene, true_poses(recipe.viewpoints));
   } catch (const Error& error) {
     throw Error(Trouble::input, place + ": " + error.what(), error.hint());
@@ -135,9 +151,10 @@ Recipe read_recipe(const std::filesystem::path& path) {
   read_part(reader, "align", recipe.align, Need::optional);
   read_part(reader, "reconstruct", recipe.reconstruct, Need::optional);
   read_part(reader, "verify", recipe.verify, Need::optional);
-  if (reader.has("limits"))
-    for (JsonReader& limit : reader.objects("limits"))
-      recipe.limits.push_back(read_limit(std::move(limit)));
+  if (reader.has("artefacts"))
+    read_part(reader, "artefacts", recipe.artefacts.emplace(), Need::required);
+  recipe.artefact_limits = read_limits(reader, "artefact_limits");
+  recipe.limits = read_limits(reader, "limits");
   (void)reader.text("about", "");
   reader.finish();
   check_settings(recipe, path.string());
@@ -155,21 +172,21 @@ std::vector<Limit> read_limits(const std::filesystem::path& path) {
 }
 
 ordered_json to_json(const Recipe& recipe) {
-  ordered_json limits = ordered_json::array();
-  for (const Limit& limit : recipe.limits)
-    limits.push_back(to_json(limit, unit_suffix(limit.name)));
-  return {{"libscan", recipe_version},
-          {"name", recipe.name},
-          {"seed", recipe.seed},
-          {"scene", to_json(recipe.scene)},
-          {"scanner", write_part(recipe.scanner)},
-          {"viewpoints", write_part(recipe.viewpoints)},
-          {"effects", to_json(recipe.effects)},
-          {"acquire", write_part(recipe.acquire)},
-          {"align", write_part(recipe.align)},
-          {"reconstruct", write_part(recipe.reconstruct)},
-          {"verify", write_part(recipe.verify)},
-          {"limits", limits}};
+  ordered_json json = {{"libscan", recipe_version},
+                       {"name", recipe.name},
+                       {"seed", recipe.seed},
+                       {"scene", to_json(recipe.scene)},
+                       {"scanner", write_part(recipe.scanner)},
+                       {"viewpoints", write_part(recipe.viewpoints)},
+                       {"effects", to_json(recipe.effects)},
+                       {"acquire", write_part(recipe.acquire)},
+                       {"align", write_part(recipe.align)},
+                       {"reconstruct", write_part(recipe.reconstruct)},
+                       {"verify", write_part(recipe.verify)},
+                       {"limits", to_json(recipe.limits)}};
+  if (recipe.artefacts) json["artefacts"] = write_part(*recipe.artefacts);
+  if (!recipe.artefact_limits.empty()) json["artefact_limits"] = to_json(recipe.artefact_limits);
+  return json;
 }
 
 }  // namespace scan

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "libscan/align/multiview.h"
 #include "libscan/reconstruct/ssd.h"
 #include "libscan/verify/verdict.h"
+#include "synth/artefacts.h"
 #include "synth/effects/plan.h"
 #include "synth/scanner.h"
 #include "synth/viewpoints.h"
@@ -49,6 +51,8 @@ struct Recipe {
   MultiviewOptions align;
   ReconstructSettings reconstruct;
   VerifySettings verify;
+  std::optional<synth::Artefacts> artefacts;  // for `scan verify --artefacts`
+  std::vector<Limit> artefact_limits;
   std::vector<Limit> limits;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // scan verify: figures against the truth, and the verdict.
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,7 @@
 #include "libscan/verify/pose_error.h"
 #include "libscan/verify/size_error.h"
 #include "libscan/verify/surface_error.h"
+#include "tools/artefact_stage.h"
 #include "tools/commands.h"
 #include "tools/inputs.h"
 #include "tools/report/picture.h"
@@ -22,6 +24,8 @@
 namespace scan {
 namespace {
 
+using nlohmann::ordered_json;
+
 struct Arguments {
   std::string measured, truth;
   std::string poses, true_poses;
@@ -29,6 +33,7 @@ struct Arguments {
   double doffs_px = 0;
   std::string limits;
   std::string picture;
+  bool artefacts = false;
 };
 
 void add(std::vector<Measurement>& to, std::vector<Measurement> more) {
@@ -122,7 +127,33 @@ std::vector<Measurement> measure_files(const Arguments& arguments, Console& cons
   return measurements;
 }
 
+ordered_json sheet_json(const std::vector<SheetLine>& sheet, const Verdict& verdict) {
+  ordered_json json = verdict_json(verdict);
+  for (auto& measurement : json.at("measurements"))
+    for (const SheetLine& line : sheet)
+      if (line.measured.name == measurement.at("name"))
+        measurement["predicted"] =
+            std::isfinite(line.predicted) ? ordered_json(line.predicted) : ordered_json(nullptr);
+  return json;
+}
+
+// The data sheet of a recipe's scanner, one line a figure.
+int verify_artefacts(const Arguments& arguments, Console& console) {
+  const Stopwatch watch;
+  const Recipe recipe = read_recipe(arguments.measured);
+  const auto sheet = artefact_sheet(recipe, console);
+  std::vector<Measurement> measured;
+  for (const SheetLine& line : sheet) measured.push_back(line.measured);
+  const Verdict verdict = judge(std::move(measured), recipe.artefact_limits);
+  console.time("verify", watch.seconds());
+  const ordered_json json = sheet_json(sheet, verdict);
+  say_verdict(json, console);
+  console.finish("verify", verdict.pass ? "ok" : "failed", json);
+  return verdict.pass ? 0 : 1;
+}
+
 int verify(const Arguments& arguments, Console& console) {
+  if (arguments.artefacts) return verify_artefacts(arguments, console);
   const Stopwatch watch;
   Verdict verdict;
   if (std::filesystem::is_directory(arguments.measured)) {
@@ -148,11 +179,13 @@ int verify(const Arguments& arguments, Console& console) {
 Action verify_command(CommandLine& line) {
   auto arguments = std::make_shared<Arguments>();
   line.input("MEASURED", arguments->measured,
-             "a mesh, a cloud, a disparity (.pfm) or a run folder");
+             "a mesh, a cloud, a disparity (.pfm), a run folder, or a recipe with --artefacts");
   line.option("--truth", arguments->truth,
               "the reference: a mesh, a run's truth/surface.json, or a disparity");
   line.option("--poses", arguments->poses, "estimated poses");
   line.option("--true-poses", arguments->true_poses, "the poses they are held against");
+  line.flag("--artefacts", arguments->artefacts,
+            "scan the recipe's calibrated bodies and write its scanner's data sheet");
   line.length("--threshold", arguments->threshold_m,
               "distance that counts as right in the F-score");
   line.number("--doffs", arguments->doffs_px, -1e6, 1e6,
