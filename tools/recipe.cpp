@@ -9,6 +9,7 @@
 #include "tools/field_reader.h"
 #include "tools/field_writer.h"
 #include "tools/recipe_fields.h"
+#include "tools/study.h"
 
 namespace scan {
 namespace {
@@ -132,19 +133,22 @@ void check_settings(const Recipe& recipe, const std::string& place) {
 }  // namespace
 
 Recipe read_recipe(const std::filesystem::path& path) {
-  const nlohmann::json json = read_json(path);
-  JsonReader reader(json, path.string());
+  return read_recipe(read_json(path), path.string(), path.parent_path());
+}
+
+Recipe read_recipe(const nlohmann::json& json, const std::string& place,
+                   const std::filesystem::path& folder) {
+  JsonReader reader(json, place);
   const long version = reader.integer("libscan");
   if (version != recipe_version)
     reader.fail("libscan", "is " + std::to_string(version) + ", this program reads version 1");
   Recipe recipe;
-  recipe.name = reader.text("name", path.stem().string());
+  recipe.name = reader.text("name", std::filesystem::path(place).stem().string());
   const long seed = reader.integer("seed", 1);
   if (seed < 0) reader.fail("seed", "is " + std::to_string(seed) + ", must not be negative");
   recipe.seed = static_cast<std::uint64_t>(seed);
   read_part(reader, "scanner", recipe.scanner, Need::required);
-  recipe.scene =
-      read_scene(reader.object("scene"), path.parent_path(), synth::wavelength_m(recipe.scanner));
+  recipe.scene = read_scene(reader.object("scene"), folder, synth::wavelength_m(recipe.scanner));
   read_part(reader, "viewpoints", recipe.viewpoints, Need::required);
   recipe.effects = read_effects(reader);
   read_part(reader, "acquire", recipe.acquire, Need::optional);
@@ -156,8 +160,9 @@ Recipe read_recipe(const std::filesystem::path& path) {
   recipe.artefact_limits = read_limits(reader, "artefact_limits");
   recipe.limits = read_limits(reader, "limits");
   (void)reader.text("about", "");
+  if (reader.has("tradeoff")) (void)read_study(reader.object("tradeoff"));
   reader.finish();
-  check_settings(recipe, path.string());
+  check_settings(recipe, place);
   return recipe;
 }
 

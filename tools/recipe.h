@@ -58,6 +58,9 @@ struct Recipe {
 
 // scan::Error (input) names file, key, value and limit; meshes are read relative to the recipe.
 Recipe read_recipe(const std::filesystem::path& path);
+// The same from JSON; `place` is how messages name it, `folder` where its meshes lie.
+Recipe read_recipe(const nlohmann::json& json, const std::string& place,
+                   const std::filesystem::path& folder);
 
 // A JSON list of limits, as a recipe has them.
 std::vector<Limit> read_limits(const std::filesystem::path& path);
