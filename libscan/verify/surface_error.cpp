@@ -10,6 +10,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "libscan/search/batch.h"
 #include "libscan/search/closest_point.h"
 #include "libscan/search/kd_tree.h"
 #include "libscan/verify/statistics.h"
@@ -21,14 +22,14 @@ constexpr double widest_share = 0.01;
 constexpr double least_share = 1e-6;  // of the diagonal: errors below it need no digits
 constexpr std::size_t most_doublings = 3;
 
-using DistanceTo = std::function<double(const Eigen::Vector3d&)>;
+using Distances = std::function<std::vector<double>(const std::vector<Eigen::Vector3d>& places)>;
 
 // What is compared: points with normals (or none) that stand for the measured surface, and the
 // distance of any place to it.
 struct Measured {
   std::vector<Eigen::Vector3d> points = {};
   std::vector<Eigen::Vector3d> normals = {};  // (0,0,0): unknown
-  DistanceTo distance_m;
+  Distances distances_m;
   std::string over;             // what `points` are
   Values values = Values::all;  // whether they are all there is
   Bounds bounds;
@@ -45,17 +46,14 @@ struct Accuracy {
 };
 
 Accuracy accuracy_of(const Measured& measured, const TrueSurface& truth) {
-  const TrueDistance distance(truth);
-  const std::size_t count = measured.points.size();
-  std::vector<double> errors_m(count), angles_rad(count);
-  parallel_for(count, [&](std::size_t i) {
-    const TrueDistance::Nearest nearest = distance.nearest(measured.points[i]);
-    errors_m[i] = std::abs(nearest.signed_distance_m);
-    if (!measured.normals.empty()) angles_rad[i] = angle_rad(measured.normals[i], nearest.normal);
-  });
-  Accuracy accuracy{std::move(errors_m), {}};
-  for (std::size_t i = 0; i < measured.normals.size(); ++i)
-    if (measured.normals[i].norm() > 0.5) accuracy.normal_errors_rad.push_back(angles_rad[i]);
+  const auto nearest = TrueDistance(truth).nearest_of_each(measured.points);
+  Accuracy accuracy;
+  accuracy.errors_m.reserve(nearest.size());
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    accuracy.errors_m.push_back(std::abs(nearest[i].signed_distance_m));
+    if (!measured.normals.empty() && measured.normals[i].norm() > 0.5)
+      accuracy.normal_errors_rad.push_back(angle_rad(measured.normals[i], nearest[i].normal));
+  }
   return accuracy;
 }
 
@@ -91,10 +89,10 @@ Bounds plane_region(const Measured& measured, const TrueSurface& truth,
 
 std::vector<double> completeness_of(const Measured& measured,
                                     const std::vector<SurfaceSample>& samples) {
-  std::vector<double> errors_m(samples.size());
-  parallel_for(samples.size(),
-               [&](std::size_t i) { errors_m[i] = measured.distance_m(samples[i].point); });
-  return errors_m;
+  std::vector<Eigen::Vector3d> places;
+  places.reserve(samples.size());
+  for (const SurfaceSample& sample : samples) places.push_back(sample.point);
+  return measured.distances_m(places);
 }
 
 double share_within(const std::vector<double>& errors_m, double threshold_m) {
@@ -189,12 +187,18 @@ std::vector<Measurement> surface_error(const Mesh& mesh, const TrueSurface& trut
   if (mesh.empty()) throw Error(Trouble::input, "measured surface: no triangles");
   const MeshSearch search(mesh);
   const Bounds bounds = bounds_of(mesh.vertices);
+  const Distances to_mesh = [&](const std::vector<Eigen::Vector3d>& places) {
+    std::vector<double> distances_m;
+    distances_m.reserve(places.size());
+    for (const ClosestPoint& closest : closest_of_each(search, places))
+      distances_m.push_back(closest.distance_m);
+    return distances_m;
+  };
   const auto with_samples = [&](std::size_t samples) {
-    Measured measured{
-        .distance_m = [&](const Eigen::Vector3d& x) { return search.closest(x).distance_m; },
-        .over = "samples of the measured surface, uniform by area",
-        .values = Values::drawn,
-        .bounds = bounds};
+    Measured measured{.distances_m = to_mesh,
+                      .over = "samples of the measured surface, uniform by area",
+                      .values = Values::drawn,
+                      .bounds = bounds};
     for (const SurfaceSample& sample : sample_surface(mesh, samples, options.seed)) {
       measured.points.push_back(sample.point);
       measured.normals.push_back(sample.normal);
@@ -217,14 +221,21 @@ std::vector<Measurement> cloud_error(const PointCloud& cloud, const TrueSurface&
   const PointCloud finite = subset(cloud, finite_points(cloud));
   if (finite.empty()) throw Error(Trouble::input, "measured cloud: no finite point");
   const KdTree search(finite.points);
-  return compare(
-      {.points = finite.points,
-       .normals = finite.normals,
-       .distance_m =
-           [&](const Eigen::Vector3d& x) { return std::sqrt(search.nearest(x)->distance2_m2); },
-       .over = "measured points",
-       .bounds = bounds_of(finite.points)},
-      truth, options);
+  const Distances to_points = [&](const std::vector<Eigen::Vector3d>& places) {
+    std::vector<Neighbour> found;
+    nearest_of_each(search, places, unlimited_m, curve_order(places), found);
+    std::vector<double> distances_m;
+    distances_m.reserve(found.size());
+    for (const Neighbour& neighbour : found)
+      distances_m.push_back(std::sqrt(neighbour.distance2_m2));
+    return distances_m;
+  };
+  return compare({.points = finite.points,
+                  .normals = finite.normals,
+                  .distances_m = to_points,
+                  .over = "measured points",
+                  .bounds = bounds_of(finite.points)},
+                 truth, options);
 }
 
 }  // namespace scan

@@ -27,6 +27,8 @@ class TrueDistance {
     double signed_distance_m;  // positive outside, by the side of the normal
   };
   Nearest nearest(const Eigen::Vector3d& x_in_world) const;
+  // Of each point, on all threads; NaN for points that are not finite. Quicker than one by one.
+  std::vector<Nearest> nearest_of_each(std::span<const Eigen::Vector3d> points_in_world) const;
 
  private:
   struct Parts;
