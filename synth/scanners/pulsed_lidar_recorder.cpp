@@ -102,7 +102,8 @@ double* LidarRecorder::open(std::size_t ray, const SampleRange& range) {
     detected_.resize(expected_e_.size());
   }
   lit_.push_back({range, start});
-  for (std::size_t b = 0; b < blocks; ++b) blocks_[start / per_block + b] = {ray, b};
+  if (scan_.detector.needs_normals())  // else all are read in closed form
+    for (std::size_t b = 0; b < blocks; ++b) blocks_[start / per_block + b] = {ray, b};
   double* const expected_e = expected_e_.data() + start;
   std::fill_n(expected_e, per_block * blocks, scan_.beam.scanner.ambient_electrons);
   return expected_e;
