@@ -45,8 +45,16 @@ bool may_be_seen(const SmoothSurfaces& surfaces, const ImageStack& stack, const 
       return false;
     from = point;
   }
-  if (!lamp.emitter || surfaces.slack_m > 0) return true;
+  if (!lamp.emitter) return true;
+  if (surfaces.slack_m > 0) return lamp.emitter->reaches(surfaces.origin + from, surfaces.slack_m);
   return lamp.emitter->irradiance((from - stack.images[0]).normalized(), length_m) > 0;
+}
+
+// Whether light of the lamp may come to the facet straight or through clear bodies.
+bool may_be_lit(const SmoothSurfaces& surfaces, const Sheet& sheet, const Lamp& lamp) {
+  if (!lamp.lights(sheet.body)) return false;
+  return !lamp.emitter || lamp.emitter->reaches(surfaces.origin + sheet.centre,
+                                                sheet.half_m.norm() + surfaces.slack_m);
 }
 
 Start start_at_image(const ImageStack& stack, const Eigen::Vector3d& from) {
@@ -63,7 +71,7 @@ void add_images_behind(const SmoothSurfaces& surfaces, const Eigen::Vector3d& fr
   for (const int s : surfaces.flat_reflectors) {
     if (stack.size > 0 && stack.sheets[stack.size - 1] == s) continue;
     const Sheet& sheet = surfaces.sheets[s];
-    if (stack.size == 0 && !lamp.lights(sheet.body)) continue;
+    if (stack.size == 0 && !may_be_lit(surfaces, sheet, lamp)) continue;
     const double height_m = sheet.normal.dot(target) - sheet.offset_m;
     if (height_m == 0) continue;
     const bool from_inside = height_m < 0;
