@@ -18,6 +18,10 @@
 
 namespace scan::synth {
 
+// An effect is included if it can move some pilot ray by this share of the scanner's own sigma:
+// five effects left out together stay below a tenth of it.
+inline constexpr double negligible_sigma = 0.02;
+
 struct PilotRay {
   double range_m = 0;
   double sigma_m = 0;         // the scanner's own 1 sigma there: shot, read and rounding noise
