@@ -19,7 +19,7 @@ constexpr double most_scales = 3;
 // its noise: the root of the 1e-3 of Segal et al., section IV.
 constexpr double usual_thickness = 0.0316;
 // Pairs that tell how much of a motion shows: each within some half, their mean within 2 %.
-constexpr std::size_t most_probed = 1024;
+constexpr std::size_t most_probed = 512;
 
 // Median over the cloud of the standard deviation along the normal; 0: not told.
 double noise_across_m(const PreparedCloud& cloud) {

@@ -128,7 +128,8 @@ double mean_pull_m(double height_m, double from_m, const WelschLoss& loss, doubl
   return mean_m;
 }
 
-// The probe against that integral: 1,024 pairs whose share varies by about one half, three sigma.
+// The probe against that integral: 512 pairs of 1,024 whose share varies by about one half, three
+// sigma.
 TEST(PairFinder, AMotionShowsLessWhereNoiseChoosesThePartners) {
   constexpr double per_m2 = 2500, sigma_m = 0.01;
   PointCloud target, source;
@@ -158,7 +159,7 @@ TEST(PairFinder, AMotionShowsLessWhereNoiseChoosesThePartners) {
   ASSERT_LT(expected, 0.8);
   const double share = problem.finder.shown_share(
       local_pose(Pose::Identity(), problem.source, problem.target), couples, weighing.loss);
-  EXPECT_NEAR(share, expected, 3 * 0.5 / std::sqrt(1024.0));
+  EXPECT_NEAR(share, expected, 3 * 0.5 / std::sqrt(512.0));
 }
 
 // Parallel planes of equal noise: the distance across, and next to nothing along.
