@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Iterative closest point for one pair of clouds.
 //
+// All points of the source count at the end: no sample, however well chosen where a direction is
+// weak, fixes any direction better than all of them weighed alike, and one chosen for stability
+// (Gelfand et al. 2003) was measured to do as well in the weak one, no better.
+//
 // No parameter bears a unit: partners must lie within the reach of the target's local fits, and a
 // Welsch loss whose scale follows the residuals, narrowing in steps (graduated non-convexity, Yang
 // et al. 2020), settles which of them count.

@@ -20,6 +20,9 @@ constexpr std::size_t coarse_stride = 4;
 // A step below three tenths of its standard error adds less than a tenth to the error's square.
 constexpr double negligible_share_of_sigma = 0.3;
 constexpr int most_settling = 10;
+// A scale that falls by less is at rest: a tenth wider weighs the noise as well. Where the pose
+// creeps, the scale does so too.
+constexpr double least_narrowing = 0.9, least_creeping = 0.99;
 // Squares weighted by w = rho' / r bend as if rho'' were w: where the loss is that of normal noise,
 // twice as much as it does.
 constexpr double least_bend = 0.25;
@@ -72,7 +75,7 @@ IcpIteration::State IcpIteration::narrow() {
         std::min(weighing_.limit_m, quantile(std::move(residuals_m), 1 - options_.trim_fraction));
   }
   State state = widened_for_weak(examine(weighing_));
-  settled_ = weighing_.loss.scale_m >= 0.99 * before_m;
+  settled_ = weighing_.loss.scale_m >= (creeps() ? least_creeping : least_narrowing) * before_m;
   if (!settled_ || weighing_.loss.scale_m == before_m) return state;
   weighing_.loss.scale_m = before_m;
   return examine(weighing_);
@@ -114,7 +117,7 @@ Step IcpIteration::next_step(const State& state) const {
   const Step step =
       best_step(finder_, pose_, state.couples, weighing_.loss, state.frame, state.weak);
   // While the scale still follows the residuals these are of the pose, not of noise.
-  if (options_.method == IcpMethod::point_to_point || !settled_) return step;
+  if (creeps() || !settled_) return step;
   return lengthened(step, state.couples, weighing_.loss);
 }
 
@@ -169,12 +172,10 @@ bool IcpIteration::iterate(IcpResult& result) {
   result.history.push_back(
       {weighing_.loss.scale_m, finder_.objective_m2(matches_, weighing_), sigma_m});
   const Step step = next_step(state);
-  // Point-to-point creeps: its steps say little of how far it has to go.
-  const bool creeps = options_.method == IcpMethod::point_to_point;
   const bool last_scale = scale_in_medians_ <= narrowest_scale && settled_;
   bool done = false;
-  if (last_scale && !creeps && settle(state, step))
-    done = fitting_scale_m() >= 0.99 * weighing_.loss.scale_m;
+  if (last_scale && !creeps() && settle(state, step))
+    done = fitting_scale_m() >= least_narrowing * weighing_.loss.scale_m;
   else
     done = small(accept_lower(state, step), state.frame) && last_scale;
   ++result.iterations;
@@ -191,8 +192,7 @@ bool IcpIteration::descend(const Pose& guess, IcpResult& result) {
   weighing_ = {.loss = {.scale_m = unlimited_m}};
   scale_in_medians_ = widest_scale;
   // Point-to-point is held by the points themselves: fewer would hold it elsewhere.
-  const bool coarse = options_.method != IcpMethod::point_to_point &&
-                      source_.size() / coarse_stride >= least_sample;
+  const bool coarse = !creeps() && source_.size() / coarse_stride >= least_sample;
   sample_every(coarse ? coarse_stride : 1);
   bool moving = true;
   while (moving && result.iterations < options_.max_iterations) moving = iterate(result);

@@ -27,6 +27,8 @@ class IcpIteration {
     TwistBasis weak{6, 0};
   };
 
+  // Point-to-point's steps say little of how far it has to go.
+  bool creeps() const { return options_.method == IcpMethod::point_to_point; }
   void sample_every(std::size_t stride);
   double fitting_scale_m() const;
   State narrow();
