@@ -55,7 +55,7 @@ void fields(Fields& f, MultiviewOptions& o) {
 }
 
 void fields(Fields& f, ReconstructSettings& s) {
-  enumeration(f, "method", s.method, {"ssd", "delaunay"});
+  enumeration(f, "method", s.method, reconstruct_method_names());
   f.integer("depth", s.ssd.depth);
   f.number("samples_per_cell", s.ssd.samples_per_cell);
   f.number("value_weight", s.ssd.value_weight);

@@ -100,7 +100,10 @@ ordered_json surface_json(const std::string& method, std::optional<int> depth,
           {"unknowns", result.unknowns},
           {"finest_cell_m", number(result.finest_cell_m)},
           {"stop", name_of(result.stop)},
-          {"invalid_points", result.invalid_points}};
+          {"invalid_points", result.invalid_points},
+          {"outlying_points", result.outlying_points},
+          {"estimated_normals", result.estimated_normals},
+          {"turned_normals", result.turned_normals}};
 }
 
 ordered_json measurement_json(const Measurement& m) {

@@ -35,7 +35,8 @@ nlohmann::ordered_json alignment_json(std::span<const std::string> files,
 
 // reconstruction.json: `method`, `depth` (null for methods without), `vertices`, `triangles`,
 // `components`, `watertight`, `genus`, `relative_residual`, `iterations`, `unknowns`,
-// `finest_cell_m`, `stop`, `invalid_points`.
+// `finest_cell_m`, `stop`, `invalid_points`, `outlying_points`, `estimated_normals`,
+// `turned_normals`.
 nlohmann::ordered_json surface_json(const std::string& method, std::optional<int> depth,
                                     const SurfaceResult& result);
 

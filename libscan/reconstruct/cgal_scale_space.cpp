@@ -3,6 +3,7 @@
 #include "libscan/reconstruct/cgal_scale_space.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Random.h>
 #include <CGAL/Scale_space_reconstruction_3/Advancing_front_mesher.h>
 #include <CGAL/Scale_space_reconstruction_3/Jet_smoother.h>
 #include <CGAL/Scale_space_surface_reconstruction_3.h>
@@ -11,6 +12,7 @@ namespace scan {
 
 Mesh cgal_scale_space(std::span<const Eigen::Vector3d> points, int smoothings) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  CGAL::get_default_random() = CGAL::Random(1);  // else each call starts where the last one ended
   std::vector<Kernel::Point_3> input;
   input.reserve(points.size());
   for (const auto& x : points) input.emplace_back(x[0], x[1], x[2]);

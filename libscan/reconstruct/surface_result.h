@@ -22,8 +22,10 @@ struct SurfaceResult {
   int iterations = 0;
   double relative_residual = 0;
   SolveStop stop = SolveStop::iteration_limit;
-  std::size_t invalid_points = 0;   // not finite or without a normal, left out
-  std::size_t outlying_points = 0;  // far from all others, left out
+  std::size_t invalid_points = 0;     // not finite or without a normal, left out
+  std::size_t outlying_points = 0;    // on no surface, left out
+  std::size_t estimated_normals = 0;  // were missing
+  std::size_t turned_normals = 0;     // pointed the wrong way
   Cost cost;
 };
 

@@ -21,8 +21,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
-#include "libscan/reconstruct/delaunay.h"
-#include "libscan/reconstruct/ssd.h"
+#include "libscan/reconstruct/reconstruct.h"
 #include "libscan/verify/surface_error.h"
 #include "tests/benchmarks/reconstruct_inputs.h"
 #include "tests/benchmarks/reconstruct_peers.h"
@@ -39,25 +38,33 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Method {
-  const char* name;
+  std::string name;
   std::function<Mesh(const ReconstructInput&)> surface;
 };
 
-const std::vector<Method>& methods() {
-  static const std::vector<Method> list{
-      {"ssd", [](const ReconstructInput& in) { return ssd(in.cloud).surface; }},
-      {"delaunay", [](const ReconstructInput& in) { return delaunay(in.cloud).surface; }},
+// Those of libscan as `scan reconstruct` calls them, then peers as they come.
+std::vector<Method> all_methods() {
+  std::vector<Method> list;
+  for (std::size_t i = 0; i < reconstruct_method_names().size(); ++i)
+    list.push_back({reconstruct_method_names()[i], [i](const ReconstructInput& in) {
+                      const auto method = static_cast<ReconstructMethod>(i);
+                      return reconstruct(in.cloud, in.viewpoints, {.method = method}).surface;
+                    }});
 #ifdef LIBSCAN_WITH_CGAL
-      {"cgal-poisson", [](const ReconstructInput& in) { return cgal_poisson(in.cloud); }},
-      {"cgal-front", [](const ReconstructInput& in) { return advancing_front(in.cloud.points); }},
-      {"cgal-scale-space",
-       [](const ReconstructInput& in) { return cgal_scale_space(in.cloud.points, 4); }},
+  list.push_back({"cgal-poisson", [](const auto& in) { return cgal_poisson(in.cloud); }});
+  list.push_back({"cgal-front", [](const auto& in) { return advancing_front(in.cloud.points); }});
+  list.push_back(
+      {"cgal-scale-space", [](const auto& in) { return cgal_scale_space(in.cloud.points, 4); }});
 #endif
-      {"pcl-poisson", [](const ReconstructInput& in) { return pcl_poisson(in.cloud); }},
+  list.push_back({"pcl-poisson", [](const auto& in) { return pcl_poisson(in.cloud); }});
 #ifdef LIBSCAN_WITH_OPEN3D
-      {"open3d-poisson", [](const ReconstructInput& in) { return open3d_poisson(in.cloud); }},
+  list.push_back({"open3d-poisson", [](const auto& in) { return open3d_poisson(in.cloud); }});
 #endif
-  };
+  return list;
+}
+
+const std::vector<Method>& methods() {
+  static const std::vector<Method> list = all_methods();
   return list;
 }
 
@@ -155,7 +162,7 @@ int print_table(const Arguments& arguments) {
           output_of("'" + program + "' --only-row --inputs " + input + " --methods " + method.name +
                     " --points " + std::to_string(arguments.points) + " --threads " +
                     std::to_string(arguments.threads) + " --data '" + arguments.data + "'");
-      std::printf("  %-18s %s", method.name, row.c_str());
+      std::printf("  %-18s %s", method.name.c_str(), row.c_str());
       std::fflush(stdout);
     }
   }
