@@ -19,6 +19,8 @@ SurfaceResult surface_by(const PreparedPoints& points, const ReconstructOptions&
       return poisson(points.cloud);
     case ReconstructMethod::mls:
       return mls(points.cloud, options.mls, progress);
+    case ReconstructMethod::range_fusion:
+      return range_fusion(points.cloud, points.viewpoints, options.range_fusion, progress);
     case ReconstructMethod::delaunay:
       return delaunay(points.cloud);
     case ReconstructMethod::scale_space:
@@ -30,7 +32,8 @@ SurfaceResult surface_by(const PreparedPoints& points, const ReconstructOptions&
 }  // namespace
 
 const std::vector<std::string>& reconstruct_method_names() {
-  static const std::vector<std::string> names{"ssd", "poisson", "mls", "delaunay", "scale-space"};
+  static const std::vector<std::string> names{"ssd",          "poisson",  "mls",
+                                              "range-fusion", "delaunay", "scale-space"};
   return names;
 }
 

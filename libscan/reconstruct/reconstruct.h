@@ -14,11 +14,12 @@
 #include "libscan/core/progress.h"
 #include "libscan/reconstruct/moving_least_squares.h"
 #include "libscan/reconstruct/prepare_points.h"
+#include "libscan/reconstruct/range_fusion.h"
 #include "libscan/reconstruct/ssd.h"
 
 namespace scan {
 
-enum class ReconstructMethod { ssd, poisson, mls, delaunay, scale_space };
+enum class ReconstructMethod { ssd, poisson, mls, range_fusion, delaunay, scale_space };
 
 // In the order of the enumeration, as they are written.
 const std::vector<std::string>& reconstruct_method_names();
@@ -28,6 +29,7 @@ struct ReconstructOptions {
   ReconstructMethod method = ReconstructMethod::ssd;
   SsdOptions ssd;
   MlsOptions mls;
+  RangeFusionOptions range_fusion;
 };
 
 // Prepares the points (prepare_points.h) and calls the method. `viewpoints`: where the scanner of
