@@ -47,7 +47,9 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   const SurfaceResult result =
       make_surface(joined(scans, poses), joined_viewpoints(scans, poses), settings, console);
   write_mesh(output, result.surface);
-  const auto json = surface_json(arguments.method, depth_of(settings), result);
+  const auto json = surface_json(result.method, depth_of(settings, result), result);
+  if (settings.method == ReconstructMethod::automatic)
+    console.say("method " + result.method + ": " + result.method_reason);
   console.say(output + ": " + std::to_string(result.surface.vertices.size()) + " vertices, " +
               std::to_string(result.surface.triangles.size()) + " triangles, " +
               std::to_string(json.at("components").get<int>()) + " components, " +

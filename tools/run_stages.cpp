@@ -74,8 +74,7 @@ void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Con
                                             recipe.reconstruct, console);
   write_mesh(run / "surface.ply", result.surface);
   write_json(run / "reconstruction.json",
-             surface_json(std::string(name_of(recipe.reconstruct.method)),
-                          depth_of(recipe.reconstruct), result));
+             surface_json(result.method, depth_of(recipe.reconstruct, result), result));
 }
 
 Verdict verify_run(const std::filesystem::path& run, Console&) {

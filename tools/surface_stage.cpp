@@ -39,8 +39,8 @@ void tell_of_points(const SurfaceResult& result, Console& console) {
 
 }  // namespace
 
-std::optional<int> depth_of(const ReconstructSettings& settings) {
-  if (settings.method != ReconstructMethod::ssd) return std::nullopt;
+std::optional<int> depth_of(const ReconstructSettings& settings, const SurfaceResult& result) {
+  if (result.method != name_of(ReconstructMethod::ssd)) return std::nullopt;
   return settings.ssd.depth;
 }
 

@@ -15,6 +15,6 @@ SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpo
                            const ReconstructSettings& settings, Console& console);
 
 // The octree's depth; none for a method without.
-std::optional<int> depth_of(const ReconstructSettings& settings);
+std::optional<int> depth_of(const ReconstructSettings& settings, const SurfaceResult& result);
 
 }  // namespace scan

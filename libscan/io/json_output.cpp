@@ -89,6 +89,7 @@ ordered_json surface_json(const std::string& method, std::optional<int> depth,
                           const SurfaceResult& result) {
   const EdgeCensus census = edge_census(result.surface);
   return {{"method", method},
+          {"method_reason", result.method_reason},
           {"depth", depth ? ordered_json(*depth) : ordered_json(nullptr)},
           {"vertices", result.surface.vertices.size()},
           {"triangles", result.surface.triangles.size()},

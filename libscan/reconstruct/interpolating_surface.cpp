@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/reconstruct/interpolating_surface.h"
 
+#include <cmath>
 #include <string>
 
 #include "libscan/core/error.h"
@@ -27,6 +28,18 @@ void follow_normals(const PointCloud& cloud, const std::vector<std::uint32_t>& p
     if (agreement[component[t]] < 0) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
 }
 
+// About the origin and of a size near 1, by a power of two, which rounds nothing: CGAL's front
+// gives up on an object of a micrometre.
+std::vector<Eigen::Vector3d> about_one(const std::vector<Eigen::Vector3d>& points) {
+  const Bounds box = bounds_of(points);
+  const double extent = box.sizes().maxCoeff();
+  const double scale = extent > 0 ? std::exp2(-std::round(std::log2(extent))) : 1;
+  std::vector<Eigen::Vector3d> moved;
+  moved.reserve(points.size());
+  for (const auto& x : points) moved.push_back(scale * (x - box.center()));
+  return moved;
+}
+
 }  // namespace
 
 SurfaceResult interpolating_surface(const PointCloud& cloud, const Triangulate& triangulate,
@@ -43,7 +56,8 @@ SurfaceResult interpolating_surface(const PointCloud& cloud, const Triangulate& 
   if (points.size() < 4)
     throw Error(Trouble::input,
                 "cloud: " + std::to_string(points.size()) + " finite points, at least 4 needed");
-  const Mesh all = triangulate(points);
+  Mesh all = triangulate(about_one(points));
+  all.vertices = points;
   if (all.empty())
     throw Error(Trouble::computation, std::string(method) + ": no triangle fits the points",
                 "points on a line or at one place span no surface");

@@ -19,7 +19,7 @@
 
 namespace scan {
 
-enum class ReconstructMethod { ssd, poisson, mls, range_fusion, delaunay, scale_space };
+enum class ReconstructMethod { automatic, ssd, poisson, mls, range_fusion, delaunay, scale_space };
 
 // In the order of the enumeration, as they are written.
 const std::vector<std::string>& reconstruct_method_names();
@@ -32,7 +32,8 @@ struct ReconstructOptions {
   RangeFusionOptions range_fusion;
 };
 
-// Prepares the points (prepare_points.h) and calls the method. `viewpoints`: where the scanner of
+// Prepares the points (prepare_points.h) and calls the method; `automatic` ("auto") is one that
+// choose_method.h chooses. `viewpoints`: where the scanner of
 // each point stood, or empty. Throws what the method throws, and scan::Error (input) for fewer than
 // 4 finite points or for points at one place or on one line: they span no surface.
 SurfaceResult reconstruct(const PointCloud& cloud, std::span<const Eigen::Vector3d> viewpoints,

@@ -3,6 +3,7 @@
 // What every reconstruction method returns.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +17,8 @@ std::string_view name_of(SolveStop stop);
 
 struct SurfaceResult {
   Mesh surface;
+  std::string method;             // set by reconstruct()
+  std::string method_reason;      // why this one
   std::vector<double> support_m;  // per vertex: distance to the nearest data point
   double finest_cell_m = 0;
   std::size_t unknowns = 0;
