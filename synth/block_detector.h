@@ -24,7 +24,7 @@ class BlockDetector {
   // `normals` may be empty if there is no need for them. read_one(i) reads where the closed form
   // does not hold.
   template <class ReadOne>
-  void read(std::span<const double> expected_e, std::span<const double> normals,
+  void read(std::span<const double> expected_e, std::span<const float> normals,
             std::span<std::uint16_t> readings, ReadOne&& read_one) const {
     if (read_block(law_, expected_e, normals, readings)) return;
     for (std::size_t i = 0; i < readings.size(); ++i)

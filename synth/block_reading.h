@@ -37,10 +37,10 @@ inline bool holds(const ReadingLaw& law, double expected_e) {
 
 // readings[i] of expected_e[i] by normals[i]. False if the law does not hold for all.
 bool read_block(const ReadingLaw& law, std::span<const double> expected_e,
-                std::span<const double> normals, std::span<std::uint16_t> readings);
+                std::span<const float> normals, std::span<std::uint16_t> readings);
 
 // The versions that this processor can run.
-using ReadingKernel = bool(const ReadingLaw& law, const double* expected_e, const double* normals,
+using ReadingKernel = bool(const ReadingLaw& law, const double* expected_e, const float* normals,
                            std::uint16_t* readings, std::size_t count);
 std::span<ReadingKernel* const> reading_kernels();
 

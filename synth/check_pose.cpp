@@ -3,6 +3,7 @@
 #include "synth/check_pose.h"
 
 #include "libscan/core/error.h"
+#include "libscan/core/shortest.h"
 
 namespace scan::synth {
 
@@ -12,7 +13,7 @@ void check_pose(const Pose& pose, const std::string& field) {
   const double error = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (error > 1e-9 || r.determinant() < 0)
     throw Error(Trouble::input, field + " is no rigid motion: R^T R differs from 1 by " +
-                                    std::to_string(error) + ", at most 1e-9");
+                                    shortest(error) + ", at most 1e-9");
 }
 
 }  // namespace scan::synth

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libscan/core/error.h"
+#include "libscan/core/shortest.h"
 #include "synth/bsdf/fresnel.h"
 
 namespace scan::synth {
@@ -13,7 +14,7 @@ namespace {
 
 void check_share(const std::string& field, double value) {
   if (value >= 0 && value <= 1) return;
-  throw Error(Trouble::input, field + " is " + std::to_string(value) + ", must be from 0 to 1");
+  throw Error(Trouble::input, field + " is " + shortest(value) + ", must be from 0 to 1");
 }
 
 void check(const GltfMaterial& gltf, const std::string& place) {
@@ -24,8 +25,7 @@ void check(const GltfMaterial& gltf, const std::string& place) {
   check_share(place + "/transmissionFactor", gltf.transmission);
   if (!(gltf.attenuation_distance_m > 0))
     throw Error(Trouble::input, place + "/attenuationDistance is " +
-                                    std::to_string(gltf.attenuation_distance_m) +
-                                    ", must be positive");
+                                    shortest(gltf.attenuation_distance_m) + ", must be positive");
 }
 
 Conductor metal(double reflectance, double alpha) {

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "libscan/core/error.h"
+#include "libscan/core/shortest.h"
 #include "synth/check_pose.h"
 #include "synth/spherical_rectangle.h"
 
@@ -18,7 +19,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 [[noreturn]] void refuse(const std::string& field, double value, const std::string& limit) {
-  throw Error(Trouble::input, field + " is " + std::to_string(value) + ", must be " + limit);
+  throw Error(Trouble::input, field + " is " + shortest(value) + ", must be " + limit);
 }
 
 void check_power(double value, const std::string& field) {

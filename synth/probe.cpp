@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "synth/packet_entry.h"
+
 namespace scan::synth {
 namespace {
 
@@ -26,6 +28,15 @@ bool accept(Probe& probe, const Solid& solid, std::uint32_t triangle, double dis
   probe.triangle = triangle;
   probe.distance_m = distance_m;
   return true;
+}
+
+// Inside the bounds from there on.
+void begin(Probe& probe, double start_m, const Arena& arena) {
+  const Ray& ray = probe.ray;
+  probe.enters = true;
+  probe.start_m = start_m;
+  shear(ray.origin + start_m * ray.direction, ray.direction, probe.sheared_ray);
+  round_off(probe.sheared_ray, arena.reach_m, probe.coarse_ray);
 }
 
 }  // namespace
@@ -49,17 +60,32 @@ void enter(Probe& probe, const Arena& arena) {
   const Ray& ray = probe.ray;
   const Bounds& bounds = arena.bounds;
   probe.origin_m = ray.origin.norm();
-  probe.enters = bounds.contains(ray.origin);
-  if (probe.enters) {
-    shear(ray.origin, ray.direction, probe.sheared_ray);
-  } else if (const auto span = bounds.isEmpty() ? std::nullopt : clip(bounds, ray)) {
-    probe.enters = true;
-    probe.start_m = span->enter_m;
-    shear(ray.origin + span->enter_m * ray.direction, ray.direction, probe.sheared_ray);
-  } else {
-    return;
+  if (bounds.contains(ray.origin))
+    begin(probe, 0, arena);
+  else if (const auto span = bounds.isEmpty() ? std::nullopt : clip(bounds, ray))
+    begin(probe, span->enter_m, arena);
+}
+
+void enter(std::span<Probe> probes, std::span<const bool> wanted, const Arena& arena) {
+  RaysByAxis rays;
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    if (!wanted[i]) continue;
+    const Ray& ray = probes[i].ray;
+    probes[i].origin_m = ray.origin.norm();
+    for (int axis = 0; axis < 3; ++axis) {
+      rays.origin[axis][i] = ray.origin(axis);
+      rays.direction[axis][i] = ray.direction(axis);
+    }
+    rays.min_m[i] = ray.min_m;
+    rays.max_m[i] = ray.max_m;
   }
-  round_off(probe.sheared_ray, arena.reach_m, probe.coarse_ray);
+  if (arena.bounds.isEmpty()) return;
+  const Eigen::Vector3d &low = arena.bounds.min(), &high = arena.bounds.max();
+  double start_m[RaysByAxis::size];
+  find_entries(rays, {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}}, start_m);
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    if (wanted[i] && start_m[i] < std::numeric_limits<double>::infinity())
+      begin(probes[i], start_m[i], arena);
 }
 
 std::optional<double> meet(const Probe& probe, const Solid& solid, const Triangle& corners) {

@@ -44,6 +44,8 @@ struct Probe {
 
 // Readies the probe, of which only `ray` is set.
 void enter(Probe& probe, const Arena& arena);
+// The same, to the bit, of up to RaysByAxis::size probes of neighbouring rays that are wanted.
+void enter(std::span<Probe> probes, std::span<const bool> wanted, const Arena& arena);
 
 // Distance at which the ray hits the triangle or the shape, in the ray's interval and beyond the
 // surface that it starts on.

@@ -39,14 +39,13 @@ struct RayCaster::Device {
   void any_of_packet(std::span<const std::optional<Ray>> rays_in_world,
                      std::span<bool> found) const;
 
-  // False for a ray that is not finite.
+  // The probe is then to enter the arena. False for a ray that is not finite.
   bool ask(const Ray& ray_in_world, Probe& probe) const {
     if (!ray_in_world.origin.allFinite() || !ray_in_world.direction.allFinite()) return false;
     probe.ray.origin = ray_in_world.origin - origin;
     probe.ray.direction = ray_in_world.direction;
     probe.ray.min_m = ray_in_world.min_m;
     probe.ray.max_m = ray_in_world.max_m;
-    enter(probe, tree.arena());
     return true;
   }
   double rounding_at(const Hit& hit) const;
@@ -83,6 +82,7 @@ bool RayCaster::Device::hits_unbounded(const Probe& probe) const {
 std::optional<Hit> RayCaster::Device::closest(const Ray& ray) const {
   Probe probe;
   if (!ask(ray, probe)) return std::nullopt;
+  enter(probe, tree.arena());
   do {
     offer_unbounded(probe);
     tree.offer_hits(probe);
@@ -102,6 +102,7 @@ void RayCaster::Device::closest_of_packet(std::span<const Ray> rays,
   const std::span<Probe> probes(memory, rays.size());
   bool wanted[packet] = {};
   for (std::size_t i = 0; i < rays.size(); ++i) wanted[i] = ask(rays[i], probes[i]);
+  enter(probes, std::span(wanted).first(rays.size()), tree.arena());
   for (bool again = true; again;) {
     for (std::size_t i = 0; i < rays.size(); ++i)
       if (wanted[i]) offer_unbounded(probes[i]);
@@ -115,7 +116,9 @@ void RayCaster::Device::closest_of_packet(std::span<const Ray> rays,
 
 bool RayCaster::Device::any(const std::optional<Ray>& ray) const {
   Probe probe;
-  return ray && ask(*ray, probe) && (hits_unbounded(probe) || tree.any_hit(probe));
+  if (!ray || !ask(*ray, probe)) return false;
+  enter(probe, tree.arena());
+  return hits_unbounded(probe) || tree.any_hit(probe);
 }
 
 void RayCaster::Device::any_of_packet(std::span<const std::optional<Ray>> rays,
@@ -128,6 +131,7 @@ void RayCaster::Device::any_of_packet(std::span<const std::optional<Ray>> rays,
     found[i] = asked && hits_unbounded(probes[i]);
     wanted[i] = asked && !found[i];
   }
+  enter(probes, std::span(wanted).first(rays.size()), tree.arena());
   tree.any_hit(probes, wanted, found);
 }
 

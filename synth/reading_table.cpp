@@ -80,9 +80,17 @@ void ReadingTable::tabulate(const std::vector<double>& cumulative) {
   for (const double share : cumulative)
     limits_.push_back(static_cast<std::uint64_t>(std::min(share, 1.0) * 0x1p48));
   unsure_ = static_cast<std::uint16_t>(first_dn_ + static_cast<int>(limits_.size()));
+  constexpr unsigned shift = 48 - quick_bits;
+  quick_.resize(std::size_t{1} << quick_bits);
+  std::size_t outcome = 0;  // of the lowest number with these bits
   for (std::uint64_t i = 0; i < quick_.size(); ++i) {
-    const std::uint16_t lowest = reading_at(i << 36), highest = reading_at(((i + 1) << 36) - 1);
-    quick_[i] = lowest == highest ? lowest : unsure_;
+    const auto reached = [&](std::uint64_t u) {
+      return outcome + 1 < limits_.size() && limits_[outcome] <= u;
+    };
+    while (reached(i << shift)) ++outcome;
+    const bool is_sure = !reached(((i + 1) << shift) - 1);
+    quick_[i] =
+        is_sure ? static_cast<std::uint16_t>(first_dn_ + static_cast<int>(outcome)) : unsure_;
   }
 }
 

@@ -3,7 +3,6 @@
 // Readings of pixels that all expect the same light, such as the dark part of a waveform.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,7 +31,7 @@ class ReadingTable {
  private:
   void tabulate(const std::vector<double>& cumulative);
   std::uint16_t reading_of(std::uint32_t half_word, RandomStream& random) const {
-    const std::uint16_t quick = quick_[half_word >> 4];
+    const std::uint16_t quick = quick_[half_word >> (16 - quick_bits)];
     if (quick != unsure_) [[likely]]
       return quick;
     return reading_at(std::uint64_t{half_word} << 32 | random.bits32());
@@ -44,7 +43,8 @@ class ReadingTable {
   int first_dn_ = 0;
   std::vector<std::uint64_t> limits_;  // outcome d has u < limits_[d]; empty: read_pixel() draws
   std::uint16_t unsure_ = 0;           // none of the readings
-  std::array<std::uint16_t, 4096> quick_{};  // the reading by the 12 highest bits, if they tell it
+  static constexpr unsigned quick_bits = 14;
+  std::vector<std::uint16_t> quick_;  // the reading by the highest bits, if they tell it
 };
 
 }  // namespace scan::synth

@@ -6,20 +6,20 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/random.h"
+#include "libscan/core/shortest.h"
 
 namespace scan::synth {
 namespace {
 
 void check_range(const std::string& field, double value, double low, double high) {
   if (value >= low && value <= high) return;
-  throw Error(Trouble::input, field + " is " + std::to_string(value) + ", must be from " +
-                                  std::to_string(low) + " to " + std::to_string(high));
+  throw Error(Trouble::input, field + " is " + shortest(value) + ", must be from " + shortest(low) +
+                                  " to " + shortest(high));
 }
 
 void check_period(const std::string& place, double period_m) {
   if (std::isfinite(period_m) && period_m > 0) return;
-  throw Error(Trouble::input,
-              place + "/period_m is " + std::to_string(period_m) + ", must be positive");
+  throw Error(Trouble::input, place + "/period_m is " + shortest(period_m) + ", must be positive");
 }
 
 void check_factors(const Image<float>& factors, const std::string& place) {
@@ -41,7 +41,7 @@ void check_texture(const NoiseTexture& noise, const std::string& place) {
 void check_texture(const ImageTexture& image, const std::string& place) {
   if (!(std::isfinite(image.width_m) && image.width_m > 0))
     throw Error(Trouble::input,
-                place + "/width_m is " + std::to_string(image.width_m) + ", must be positive");
+                place + "/width_m is " + shortest(image.width_m) + ", must be positive");
   check_factors(image.factors, place);
 }
 

@@ -9,6 +9,7 @@
 #include "libscan/core/error.h"
 #include "libscan/core/mesh.h"
 #include "libscan/core/random.h"
+#include "libscan/core/shortest.h"
 
 namespace scan::synth {
 namespace {
@@ -17,8 +18,7 @@ constexpr double full_turn_rad = 2 * std::numbers::pi;
 
 void require(bool fulfilled, const std::string& field, double value, const char* limit) {
   if (fulfilled) return;
-  throw Error(Trouble::input,
-              "viewpoints/" + field + " is " + std::to_string(value) + ", " + limit);
+  throw Error(Trouble::input, "viewpoints/" + field + " is " + shortest(value) + ", " + limit);
 }
 
 void check_circle(int count, double radius_m, const Eigen::Vector3d& centre_m) {

@@ -13,6 +13,7 @@ Action acquire_command(CommandLine& line);
 Action align_command(CommandLine& line);
 Action reconstruct_command(CommandLine& line);
 Action verify_command(CommandLine& line);
+Action tradeoff_command(CommandLine& line);
 Action report_command(CommandLine& line);
 Action info_command(CommandLine& line);
 Action convert_command(CommandLine& line);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "libscan/acquire/depth_edges.h"
@@ -20,12 +21,16 @@ using synth::EffectSet;
 constexpr int first_look = 4;  // repeats; of points that never move in them at most 3 in 4 n would
 constexpr std::uint64_t most_paths = 40'000'000;  // until which undecided points call for more
 constexpr double decided_share = 0.95;
-// Decoders are not continuous: what carries a sample over a window's end moves a point by some
-// hundredths of its sigma, however small it is (by 0.03 at 3 of 2000 points in fog-lidar, for light
-// that moves 1e-4). And renderers leave out by themselves what does not pay: the phase camera 0.07
-// sigma by sub-rays, the laser line 0.1 by paths (see their render()).
-constexpr double decoder_sigma = 0.05;
+// Renderers leave out by themselves what does not pay: the phase camera 0.07 sigma by sub-rays, the
+// laser line 0.1 by paths (see their render()).
 constexpr double spared_sigma = 0.1;
+
+// Decoders are not continuous: readings are rounded, windows end at whole samples, and what carries
+// one over an end moves a point by some hundredths of its sigma, however small it is. Read noise of
+// half a step or more, the same in both scans of a pair, lets such steps fall on few of the pairs,
+// which their median passes over, and makes the mean of rounded readings what it would be without
+// rounding (to 2 exp(-pi^2 / 2) of a step over pi, Widrow 1961).
+enum class Dither { off, on };
 
 // How many rays are checked: of a laser line each step takes a whole image, and a stereo pair's
 // windows need some rows.
@@ -59,64 +64,73 @@ class Check {
 
   const synth::EffectPlan& plan() const { return plan_; }
   const EffectSet& chosen() const { return chosen_; }
+  // Without dither, which takes fewer scans, if that is enough.
   EffectComparison compare(const std::string& effect, const EffectBound& bound,
                            const EffectSet& effects, double spared);
 
  private:
   synth::Scanner thinned() const;
-  EffectSet quiet(const EffectSet& effects) const;
-  Result simulate(const EffectSet& effects, int repeat) const;
-  const Result& planned(int repeat);
-  bool has_chance(const EffectSet& effects) const;
+  bool is_stereo() const { return std::holds_alternative<synth::StereoPair>(scanner_); }
+  EffectSet quiet(const EffectSet& effects, Dither dither) const;
+  Result simulate(const EffectSet& effects, int repeat, Dither dither) const;
+  const Result& planned(int repeat, Dither dither);
+  bool has_chance(const EffectSet& effects, Dither dither) const;
   PairedScans start() const;
+  EffectComparison compare(const std::string& effect, const EffectBound& bound,
+                           const EffectSet& effects, double spared, Dither dither);
 
   const Recipe& recipe_;
   Pose view_;
   synth::EffectPlan plan_;
   EffectSet chosen_;
   synth::Scanner scanner_;
-  std::vector<Result> planned_;  // by repeat
+  std::map<Dither, std::vector<Result>> planned_;  // by repeat
 };
 
-// A phase camera is thinned by larger pixels, a pair by fewer rows. A dither of half a step makes
-// the mean of readings of 8 bits as if they were not rounded (to 2 exp(-pi^2 / 2) of a step over
-// pi, Widrow 1961), so that repeats tell what rounding hides.
+// A phase camera is thinned by larger pixels, a pair by fewer rows.
 synth::Scanner Check::thinned() const {
   const auto* camera = std::get_if<synth::PhaseCamera>(&recipe_.scanner);
   if (camera && camera->sub_rays > 1 && !chosen_.has(Effect::footprint))
     return recipe_.scanner;  // how large its pixels are is the question
   const double rays = std::visit([](const auto& s) { return checked_rays(s); }, recipe_.scanner);
-  synth::Scanner few = synth::thinned(recipe_.scanner, rays);
-  if (auto* pair = std::get_if<synth::StereoPair>(&few))
-    pair->sensor.read_noise_e = std::max(pair->sensor.read_noise_e, pair->sensor.gain_e_per_dn / 2);
-  return few;
+  return synth::thinned(recipe_.scanner, rays);
 }
 
-EffectSet Check::quiet(const EffectSet& effects) const {
+EffectSet Check::quiet(const EffectSet& effects, Dither dither) const {
   EffectSet set = effects.without(Effect::shot_noise);
-  set.set(Effect::read_noise, std::holds_alternative<synth::StereoPair>(scanner_));
+  set.set(Effect::read_noise, dither == Dither::on);
   if (chosen_.has(Effect::quantisation)) set.set(Effect::quantisation, false);
   return set;
 }
 
-Result Check::simulate(const EffectSet& effects, int repeat) const {
-  const EffectSet set = quiet(effects);
+synth::Scanner dithered(synth::Scanner scanner) {
+  std::visit(
+      [](auto& s) {
+        s.sensor.read_noise_e = std::max(s.sensor.read_noise_e, s.sensor.gain_e_per_dn / 2);
+      },
+      scanner);
+  return scanner;
+}
+
+Result Check::simulate(const EffectSet& effects, int repeat, Dither dither) const {
+  const EffectSet set = quiet(effects, dither);
   const synth::RayCaster caster(synth::simplified(recipe_.scene.scene, set));
   const synth::Rendering rendering =
-      synth::render(scanner_, caster, view_,
+      synth::render(dither == Dither::on ? dithered(scanner_) : scanner_, caster, view_,
                     {.seed = recipe_.seed, .scan = static_cast<std::uint32_t>(repeat)}, set);
   return {acquire(rendering.frames, recipe_.acquire), rendering.statistics.paths};
 }
 
-const Result& Check::planned(int repeat) {
-  while (static_cast<int>(planned_.size()) <= repeat)
-    planned_.push_back(simulate(chosen_, static_cast<int>(planned_.size())));
-  return planned_[static_cast<std::size_t>(repeat)];
+const Result& Check::planned(int repeat, Dither dither) {
+  std::vector<Result>& results = planned_[dither];
+  while (static_cast<int>(results.size()) <= repeat)
+    results.push_back(simulate(chosen_, static_cast<int>(results.size()), dither));
+  return results[static_cast<std::size_t>(repeat)];
 }
 
 // Besides that of light's paths.
-bool Check::has_chance(const EffectSet& effects) const {
-  if (std::holds_alternative<synth::StereoPair>(scanner_)) return true;
+bool Check::has_chance(const EffectSet& effects, Dither dither) const {
+  if (dither == Dither::on) return true;
   const auto* laser = std::get_if<synth::LaserLine>(&scanner_);
   return laser && laser->speckle_contrast > 0 && effects.has(Effect::speckle);
 }
@@ -136,16 +150,27 @@ PairedScans Check::start() const {
 
 EffectComparison Check::compare(const std::string& effect, const EffectBound& bound,
                                 const EffectSet& effects, double spared) {
+  if (is_stereo()) return compare(effect, bound, effects, spared, Dither::on);  // 8 bits are coarse
+  const EffectComparison quiet = compare(effect, bound, effects, spared, Dither::off);
+  if (quiet.pass) return quiet;
+  EffectComparison result = compare(effect, bound, effects, spared, Dither::on);
+  if (result.resolution_sigma > matters_sigma)
+    result.pass = false;  // too coarse to excuse anything
+  return result;
+}
+
+EffectComparison Check::compare(const std::string& effect, const EffectBound& bound,
+                                const EffectSet& effects, double spared, Dither dither) {
   PairedScans pairs = start();
   std::uint64_t paths = 0;
   const auto add = [&] {
-    const Result fuller = simulate(effects, pairs.repeats());
-    const Result& by_plan = planned(pairs.repeats());
+    const Result fuller = simulate(effects, pairs.repeats(), dither);
+    const Result& by_plan = planned(pairs.repeats(), dither);
     pairs.add(by_plan.scan, fuller.scan);
     paths += fuller.paths + by_plan.paths;
   };
   add();
-  if (paths == 0 && !has_chance(effects)) return pairs.judge(effect, bound, spared, true);
+  if (paths == 0 && !has_chance(effects, dither)) return pairs.judge(effect, bound, spared, true);
   while (pairs.repeats() < first_look && pairs.identical()) add();
   if (pairs.identical()) return pairs.judge(effect, bound, spared, true);
   for (int look = 1;; look *= 2) {
@@ -174,10 +199,9 @@ std::vector<EffectComparison> check_plan(const Recipe& recipe) {
     const EffectBound bound{decision.bound_m, decision.bound_sigma};
     all = {all.range_m + bound.range_m, all.sigmas + bound.sigmas};
     comparisons.push_back(check.compare(std::string(synth::name(decision.effect)), bound,
-                                        EffectSet(check.chosen()).set(decision.effect),
-                                        decoder_sigma));
+                                        EffectSet(check.chosen()).set(decision.effect), 0));
   }
-  comparisons.push_back(check.compare("all", all, EffectSet::all(), decoder_sigma + spared_sigma));
+  comparisons.push_back(check.compare("all", all, EffectSet::all(), spared_sigma));
   return comparisons;
 }
 
@@ -202,6 +226,13 @@ void say(const std::vector<EffectComparison>& comparisons, const Console& consol
         "    surely moved: %.3g sigma; %d pairs of scans resolve %.2g sigma, undecided: %zu "
         "points; not judged: %zu that jump at depth edges, %zu seldom in both, %zu never",
         c.moved_sigma, c.repeats, c.resolution_sigma, c.undecided, c.at_edges, c.unsteady, c.lost);
+    console.say(text);
+    if (c.undecided == 0) continue;
+    std::snprintf(
+        text, sizeof text,
+        "    the %zu undecided points are not proven one by one: the bias proves them, with "
+        "the others, in the mean alone",
+        c.undecided);
     console.say(text);
   }
 }

@@ -14,8 +14,10 @@ namespace scan {
 
 // The plan that the recipe leads to, on some thousand rays of the first viewpoint: each effect that
 // it leaves out switched on alone, then all of them. Noise of the detector is left out of both
-// scans of a pair. Where light takes random paths, pairs are repeated, and again while the answer
-// is open for more than one point in twenty and the work allows.
+// scans of a pair; where a point is beyond its bound, and for stereo pairs, read noise comes in,
+// the same in both, so that steps of the decoder do not count. Where there is chance pairs are
+// repeated, and again while the answer is open for more than one point in twenty and the work
+// allows.
 std::vector<EffectComparison> check_plan(const Recipe& recipe);
 
 bool all_pass(const std::vector<EffectComparison>& comparisons);

@@ -19,6 +19,24 @@ namespace {
 constexpr double least_suspect_ratio = 30;
 constexpr std::array<double, 4> suspect_factors = {39.37, 100, 1000, 1e6};
 
+double diagonal_m(const Bounds& box) {
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
+// Says so if `size_m` is so far from the usual one that its unit may be another.
+void warn_of_unit(const std::string& path, double size_m, double usual_m, const std::string& whose,
+                  Console& console) {
+  if (!(size_m > 0) || !(usual_m > 0)) return;
+  const double off = std::abs(std::log10(size_m / usual_m));
+  if (off < std::log10(least_suspect_ratio)) return;
+  double factor = suspect_factors.front();
+  for (const double other : suspect_factors)
+    if (std::abs(std::log10(other) - off) < std::abs(std::log10(factor) - off)) factor = other;
+  console.warn(path + ": its size is " + readable_length(size_m) + ", that of " + whose + " is " +
+               readable_length(usual_m) + "; another unit? Then scale it by " +
+               shortest(size_m > usual_m ? 1 / factor : factor));
+}
+
 }  // namespace
 
 std::pair<std::vector<std::string>, std::string> split_output(std::vector<std::string> paths) {
@@ -54,23 +72,20 @@ std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths,
 void warn_of_units(const std::vector<std::string>& paths, const std::vector<Scan>& scans,
                    Console& console) {
   std::vector<double> sizes_m;
-  for (const Scan& scan : scans) {
-    const Bounds box = bounds_of(scan.cloud.points);
-    sizes_m.push_back(box.isEmpty() ? 0 : box.diagonal().norm());
-  }
+  for (const Scan& scan : scans) sizes_m.push_back(diagonal_m(bounds_of(scan.cloud.points)));
   const double usual_m = median(sizes_m);
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    if (!(sizes_m[i] > 0)) continue;
-    const double ratio = sizes_m[i] / usual_m;
-    const double off = std::abs(std::log10(ratio));
-    if (off < std::log10(least_suspect_ratio)) continue;
-    double factor = suspect_factors.front();
-    for (const double other : suspect_factors)
-      if (std::abs(std::log10(other) - off) < std::abs(std::log10(factor) - off)) factor = other;
-    console.warn(paths[i] + ": its size is " + readable_length(sizes_m[i]) + ", that of most is " +
-                 readable_length(usual_m) + "; another unit? Then scale it by " +
-                 shortest(ratio > 1 ? 1 / factor : factor));
-  }
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    warn_of_unit(paths[i], sizes_m[i], usual_m, "most", console);
+}
+
+void warn_of_other_frame(const std::string& path, const Bounds& measured, const Bounds& truth,
+                         Console& console) {
+  if (measured.isEmpty() || truth.isEmpty() || !truth.sizes().allFinite()) return;
+  warn_of_unit(path, diagonal_m(measured), diagonal_m(truth), "the truth", console);
+  const double gap_m = std::sqrt(measured.squaredExteriorDistance(truth));
+  if (gap_m > diagonal_m(truth))
+    console.warn(path + ": lies " + readable_length(gap_m) + " from the truth, whose size is " +
+                 readable_length(diagonal_m(truth)) + "; another frame? Then align it first");
 }
 
 bool tell_of_pose(const std::string& scan, const ScanPose& pose, Console& console) {

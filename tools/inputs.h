@@ -23,6 +23,11 @@ void check_output(const std::string& path);
 // Reads scans; those without normals get them by plane fits, facing their viewpoint.
 std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths, Console& console);
 
+// Warns of a measured surface or cloud whose box cannot be that of the truth: another unit (with
+// the factor) or another frame (with the gap). Says nothing where the truth has no end.
+void warn_of_other_frame(const std::string& path, const Bounds& measured, const Bounds& truth,
+                         Console& console);
+
 // Warns of scans so much larger or smaller than the others that their unit may be another one.
 void warn_of_units(const std::vector<std::string>& paths, const std::vector<Scan>& scans,
                    Console& console);

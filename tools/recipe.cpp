@@ -9,6 +9,7 @@
 #include "tools/field_reader.h"
 #include "tools/field_writer.h"
 #include "tools/recipe_fields.h"
+#include "tools/study.h"
 
 namespace scan {
 namespace {
@@ -84,6 +85,13 @@ Limit read_limit(JsonReader reader) {
   return limit;
 }
 
+std::vector<Limit> read_limits(JsonReader& reader, const char* key) {
+  std::vector<Limit> limits;
+  if (reader.has(key))
+    for (JsonReader& limit : reader.objects(key)) limits.push_back(read_limit(std::move(limit)));
+  return limits;
+}
+
 ordered_json to_json(const Limit& limit, const std::string& unit) {
   const std::string word = limit.relation == "<="   ? "at_most"
                            : limit.relation == ">=" ? "at_least"
@@ -93,11 +101,19 @@ ordered_json to_json(const Limit& limit, const std::string& unit) {
 
 // The unit's suffix of a figure, by its name.
 std::string unit_suffix(const std::string& name) {
-  if (name.find("normal_error") == 0 || name.find("rotation_error") == 0) return "_rad";
-  for (const char* count : {"components", "boundary_edges", "non_manifold_edges", "genus",
-                            "f_score", "ray_hit_fraction", "normalised_range_error_rms"})
+  for (const char* angle : {"normal_error", "rotation_error", "cylinder_axis_error"})
+    if (name.find(angle) != std::string::npos) return "_rad";
+  for (const char* count :
+       {"components", "boundary_edges", "non_manifold_edges", "genus", "f_score",
+        "ray_hit_fraction", "normalised_range_error_rms", "area_error", "volume_error"})
     if (name == count) return "";
   return "_m";
+}
+
+ordered_json to_json(const std::vector<Limit>& limits) {
+  ordered_json list = ordered_json::array();
+  for (const Limit& limit : limits) list.push_back(to_json(limit, unit_suffix(limit.name)));
+  return list;
 }
 
 void check_settings(const Recipe& recipe, const std::string& place) {
@@ -107,6 +123,7 @@ void check_settings(const Recipe& recipe, const std::string& place) {
     check(recipe.align.icp);
     check(recipe.reconstruct.ssd);
     check(recipe.effects);
+    if (recipe.artefacts) check(*recipe.artefacts);
     check_standing(recipe.scene.scene, true_poses(recipe.viewpoints));
   } catch (const Error& error) {
     throw Error(Trouble::input, place + ": " + error.what(), error.hint());
@@ -116,31 +133,36 @@ void check_settings(const Recipe& recipe, const std::string& place) {
 }  // namespace
 
 Recipe read_recipe(const std::filesystem::path& path) {
-  const nlohmann::json json = read_json(path);
-  JsonReader reader(json, path.string());
+  return read_recipe(read_json(path), path.string(), path.parent_path());
+}
+
+Recipe read_recipe(const nlohmann::json& json, const std::string& place,
+                   const std::filesystem::path& folder) {
+  JsonReader reader(json, place);
   const long version = reader.integer("libscan");
   if (version != recipe_version)
     reader.fail("libscan", "is " + std::to_string(version) + ", this program reads version 1");
   Recipe recipe;
-  recipe.name = reader.text("name", path.stem().string());
+  recipe.name = reader.text("name", std::filesystem::path(place).stem().string());
   const long seed = reader.integer("seed", 1);
   if (seed < 0) reader.fail("seed", "is " + std::to_string(seed) + ", must not be negative");
   recipe.seed = static_cast<std::uint64_t>(seed);
   read_part(reader, "scanner", recipe.scanner, Need::required);
-  recipe.scene =
-      read_scene(reader.object("scene"), path.parent_path(), synth::wavelength_m(recipe.scanner));
+  recipe.scene = read_scene(reader.object("scene"), folder, synth::wavelength_m(recipe.scanner));
   read_part(reader, "viewpoints", recipe.viewpoints, Need::required);
   recipe.effects = read_effects(reader);
   read_part(reader, "acquire", recipe.acquire, Need::optional);
   read_part(reader, "align", recipe.align, Need::optional);
   read_part(reader, "reconstruct", recipe.reconstruct, Need::optional);
   read_part(reader, "verify", recipe.verify, Need::optional);
-  if (reader.has("limits"))
-    for (JsonReader& limit : reader.objects("limits"))
-      recipe.limits.push_back(read_limit(std::move(limit)));
+  if (reader.has("artefacts"))
+    read_part(reader, "artefacts", recipe.artefacts.emplace(), Need::required);
+  recipe.artefact_limits = read_limits(reader, "artefact_limits");
+  recipe.limits = read_limits(reader, "limits");
   (void)reader.text("about", "");
+  if (reader.has("tradeoff")) (void)read_study(reader.object("tradeoff"));
   reader.finish();
-  check_settings(recipe, path.string());
+  check_settings(recipe, place);
   return recipe;
 }
 
@@ -155,21 +177,21 @@ std::vector<Limit> read_limits(const std::filesystem::path& path) {
 }
 
 ordered_json to_json(const Recipe& recipe) {
-  ordered_json limits = ordered_json::array();
-  for (const Limit& limit : recipe.limits)
-    limits.push_back(to_json(limit, unit_suffix(limit.name)));
-  return {{"libscan", recipe_version},
-          {"name", recipe.name},
-          {"seed", recipe.seed},
-          {"scene", to_json(recipe.scene)},
-          {"scanner", write_part(recipe.scanner)},
-          {"viewpoints", write_part(recipe.viewpoints)},
-          {"effects", to_json(recipe.effects)},
-          {"acquire", write_part(recipe.acquire)},
-          {"align", write_part(recipe.align)},
-          {"reconstruct", write_part(recipe.reconstruct)},
-          {"verify", write_part(recipe.verify)},
-          {"limits", limits}};
+  ordered_json json = {{"libscan", recipe_version},
+                       {"name", recipe.name},
+                       {"seed", recipe.seed},
+                       {"scene", to_json(recipe.scene)},
+                       {"scanner", write_part(recipe.scanner)},
+                       {"viewpoints", write_part(recipe.viewpoints)},
+                       {"effects", to_json(recipe.effects)},
+                       {"acquire", write_part(recipe.acquire)},
+                       {"align", write_part(recipe.align)},
+                       {"reconstruct", write_part(recipe.reconstruct)},
+                       {"verify", write_part(recipe.verify)},
+                       {"limits", to_json(recipe.limits)}};
+  if (recipe.artefacts) json["artefacts"] = write_part(*recipe.artefacts);
+  if (!recipe.artefact_limits.empty()) json["artefact_limits"] = to_json(recipe.artefact_limits);
+  return json;
 }
 
 }  // namespace scan

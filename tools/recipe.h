@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "libscan/align/multiview.h"
 #include "libscan/reconstruct/reconstruct.h"
 #include "libscan/verify/verdict.h"
+#include "synth/artefacts.h"
 #include "synth/effects/plan.h"
 #include "synth/scanner.h"
 #include "synth/viewpoints.h"
@@ -47,11 +49,16 @@ struct Recipe {
   MultiviewOptions align;
   ReconstructSettings reconstruct;
   VerifySettings verify;
+  std::optional<synth::Artefacts> artefacts;  // for `scan verify --artefacts`
+  std::vector<Limit> artefact_limits;
   std::vector<Limit> limits;
 };
 
 // scan::Error (input) names file, key, value and limit; meshes are read relative to the recipe.
 Recipe read_recipe(const std::filesystem::path& path);
+// The same from JSON; `place` is how messages name it, `folder` where its meshes lie.
+Recipe read_recipe(const nlohmann::json& json, const std::string& place,
+                   const std::filesystem::path& folder);
 
 // A JSON list of limits, as a recipe has them.
 std::vector<Limit> read_limits(const std::filesystem::path& path);

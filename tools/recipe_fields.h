@@ -14,5 +14,6 @@ void fields(Fields& f, AcquireOptions& options);
 void fields(Fields& f, MultiviewOptions& options);
 void fields(Fields& f, ReconstructSettings& settings);
 void fields(Fields& f, VerifySettings& settings);
+void fields(Fields& f, synth::Artefacts& artefacts);
 
 }  // namespace scan

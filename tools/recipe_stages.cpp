@@ -66,6 +66,16 @@ void fields(Fields& f, ReconstructSettings& s) {
   f.length("max_sigma", s.max_sigma_m);
 }
 
+void fields(Fields& f, synth::Artefacts& a) {
+  f.vector("volume", a.volume_m);
+  f.vector("centre", a.centre_m);
+  f.length("ball_diameter", a.ball_diameter_m);
+  f.length("bar_length", a.bar_length_m);
+  f.length("plate", a.plate_m);
+  f.length("cylinder_diameter", a.cylinder_diameter_m);
+  f.length("step", a.step_m);
+}
+
 void fields(Fields& f, VerifySettings& s) {
   f.length("seen_distance", s.seen_distance_m);
   f.length("f_score_threshold", s.f_score_threshold_m);

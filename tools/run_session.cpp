@@ -76,6 +76,12 @@ Recipe adjusted(Recipe recipe, const RunSettings& settings) {
   return recipe;
 }
 
+double rays_of(const ordered_json& scans) {
+  double rays = 0;
+  for (const auto& scan : scans) rays += scan.at("rays").get<double>();
+  return rays;
+}
+
 }  // namespace
 
 void declare_run_settings(CommandLine& line, RunSettings& settings) {
@@ -129,11 +135,14 @@ int RunSession::finish(const std::string& command, const ordered_json& more, boo
   for (std::size_t i = 0; i < scans.size(); ++i)
     result["scans"].push_back(scan_json("scans/" + scan_name(i) + ".ply", scans[i]));
   result["effects"] = read_or_empty(run_ / "effects.json");
-  const ordered_json costs = read_or_empty(run_ / "timings.json").value("effects", ordered_json());
+  const ordered_json timings = read_or_empty(run_ / "timings.json");
+  const ordered_json costs = timings.value("effects", ordered_json());
   for (auto& effect : result["effects"])
     effect["cost_s"] = costs.value(effect.value("effect", ""), 0.0);
   const ordered_json simulation = read_or_empty(run_ / "simulation.json");
   for (const auto& [key, value] : simulation.items()) result[key] = value;
+  if (const double seconds = timings.value("simulate", 0.0); seconds > 0)
+    result["rays_per_second"] = rays_of(result["scans"]) / seconds;
   for (const auto& [key, value] : more.items()) result[key] = value;
   if (fs::exists(run_ / "verdict.json")) {
     const ordered_json verdict = read_or_empty(run_ / "verdict.json");

@@ -117,6 +117,7 @@ void say_verdict(const ordered_json& verdict, const Console& console) {
     std::snprintf(line, sizeof line, "  %-28s %12s", m.at("name").get<std::string>().c_str(),
                   readable(m.at("value"), unit).c_str());
     std::string text = line;
+    if (m.contains("predicted")) text += "   predicted " + readable(m.at("predicted"), unit);
     if (!m.at("limit").is_null())
       text += std::string("   ") + (m.at("pass").get<bool>() ? "pass" : "FAIL") + " (" +
               m.at("relation").get<std::string>() + " " + readable(m.at("limit"), unit) + ")";

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // scan verify: figures against the truth, and the verdict.
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -12,7 +13,9 @@
 #include "libscan/io/truth_file.h"
 #include "libscan/verify/disparity_error.h"
 #include "libscan/verify/pose_error.h"
+#include "libscan/verify/size_error.h"
 #include "libscan/verify/surface_error.h"
+#include "tools/artefact_stage.h"
 #include "tools/commands.h"
 #include "tools/inputs.h"
 #include "tools/report/picture.h"
@@ -21,6 +24,8 @@
 namespace scan {
 namespace {
 
+using nlohmann::ordered_json;
+
 struct Arguments {
   std::string measured, truth;
   std::string poses, true_poses;
@@ -28,7 +33,12 @@ struct Arguments {
   double doffs_px = 0;
   std::string limits;
   std::string picture;
+  bool artefacts = false;
 };
+
+void add(std::vector<Measurement>& to, std::vector<Measurement> more) {
+  for (Measurement& measurement : more) to.push_back(std::move(measurement));
+}
 
 bool is_disparity(const std::string& path) {
   return std::filesystem::path(path).extension() == ".pfm";
@@ -76,7 +86,9 @@ std::vector<Measurement> measure_poses(const Arguments& arguments,
       points.push_back(world_from_scanner.inverse() *
                        box.corner(static_cast<Bounds::CornerType>(corner)));
   }
-  return summarise(pose_errors(estimated, truth, felt));
+  auto figures = summarise(pose_errors(estimated, truth, felt));
+  add(figures, summarise_relative(relative_pose_errors(estimated, truth, felt)));
+  return figures;
 }
 
 void write_picture(const std::string& path, const Mesh& mesh, const TrueSurface& truth) {
@@ -101,7 +113,8 @@ std::vector<Measurement> measure_files(const Arguments& arguments, Console& cons
   if (holds_triangles(arguments.measured)) {
     const Mesh mesh = read_mesh(arguments.measured);
     measurements = surface_error(mesh, truth, options);
-    for (Measurement& measurement : topology(mesh)) measurements.push_back(std::move(measurement));
+    add(measurements, size_error(mesh, truth));
+    add(measurements, topology(mesh));
     if (!arguments.picture.empty()) write_picture(arguments.picture, mesh, truth);
     points = mesh.vertices;
   } else {
@@ -109,13 +122,38 @@ std::vector<Measurement> measure_files(const Arguments& arguments, Console& cons
     measurements = cloud_error(scan.cloud, truth, options);
     points = scan.cloud.points;
   }
-  if (!arguments.poses.empty())
-    for (Measurement& measurement : measure_poses(arguments, points, console))
-      measurements.push_back(std::move(measurement));
+  warn_of_other_frame(arguments.measured, bounds_of(points), bounds_of(truth), console);
+  if (!arguments.poses.empty()) add(measurements, measure_poses(arguments, points, console));
   return measurements;
 }
 
+ordered_json sheet_json(const std::vector<SheetLine>& sheet, const Verdict& verdict) {
+  ordered_json json = verdict_json(verdict);
+  for (auto& measurement : json.at("measurements"))
+    for (const SheetLine& line : sheet)
+      if (line.measured.name == measurement.at("name"))
+        measurement["predicted"] =
+            std::isfinite(line.predicted) ? ordered_json(line.predicted) : ordered_json(nullptr);
+  return json;
+}
+
+// The data sheet of a recipe's scanner, one line a figure.
+int verify_artefacts(const Arguments& arguments, Console& console) {
+  const Stopwatch watch;
+  const Recipe recipe = read_recipe(arguments.measured);
+  const auto sheet = artefact_sheet(recipe, console);
+  std::vector<Measurement> measured;
+  for (const SheetLine& line : sheet) measured.push_back(line.measured);
+  const Verdict verdict = judge(std::move(measured), recipe.artefact_limits);
+  console.time("verify", watch.seconds());
+  const ordered_json json = sheet_json(sheet, verdict);
+  say_verdict(json, console);
+  console.finish("verify", verdict.pass ? "ok" : "failed", json);
+  return verdict.pass ? 0 : 1;
+}
+
 int verify(const Arguments& arguments, Console& console) {
+  if (arguments.artefacts) return verify_artefacts(arguments, console);
   const Stopwatch watch;
   Verdict verdict;
   if (std::filesystem::is_directory(arguments.measured)) {
@@ -141,11 +179,13 @@ int verify(const Arguments& arguments, Console& console) {
 Action verify_command(CommandLine& line) {
   auto arguments = std::make_shared<Arguments>();
   line.input("MEASURED", arguments->measured,
-             "a mesh, a cloud, a disparity (.pfm) or a run folder");
+             "a mesh, a cloud, a disparity (.pfm), a run folder, or a recipe with --artefacts");
   line.option("--truth", arguments->truth,
               "the reference: a mesh, a run's truth/surface.json, or a disparity");
   line.option("--poses", arguments->poses, "estimated poses");
   line.option("--true-poses", arguments->true_poses, "the poses they are held against");
+  line.flag("--artefacts", arguments->artefacts,
+            "scan the recipe's calibrated bodies and write its scanner's data sheet");
   line.length("--threshold", arguments->threshold_m,
               "distance that counts as right in the F-score");
   line.number("--doffs", arguments->doffs_px, -1e6, 1e6,

@@ -3,6 +3,7 @@
 #include "tools/verify_stage.h"
 
 #include "libscan/verify/pose_error.h"
+#include "libscan/verify/size_error.h"
 #include "libscan/verify/surface_error.h"
 
 namespace scan {
@@ -70,9 +71,12 @@ std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth
     options.seen_distance_m = settings.seen_distance_m;
   }
   std::vector<Measurement> measurements = surface_error(surface, truth.surface, options);
+  add(measurements, size_error(surface, truth.surface));
   add(measurements, topology(surface));
-  add(measurements, summarise(pose_errors(result.world_from_scan, true_poses(truth),
-                                          picked_points(result.scans))));
+  const auto felt = picked_points(result.scans);
+  add(measurements, summarise(pose_errors(result.world_from_scan, true_poses(truth), felt)));
+  add(measurements,
+      summarise_relative(relative_pose_errors(result.world_from_scan, true_poses(truth), felt)));
   add(measurements, measure_ranges(result.scans, truth));
   return measurements;
 }

@@ -4,6 +4,7 @@
 
 #ifdef LIBSCAN_WITH_CGAL
 #include <CGAL/version.h>
+#include <fstream>
 #endif
 #include <ceres/version.h>
 #include <embree3/rtcore_config.h>
@@ -22,6 +23,13 @@ std::string dotted(int major, int minor, int patch) {
 }
 
 }  // namespace
+
+std::string machine_text() {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown processor";
+}
 
 std::string version_text() {
   return LIBSCAN_VERSION;

@@ -9,6 +9,7 @@
 namespace scan {
 
 std::string version_text();             // "0.1.0"
+std::string machine_text();             // the processor's name
 nlohmann::ordered_json version_json();  // version, compiler, and the libraries it was built with
 
 }  // namespace scan

@@ -98,29 +98,63 @@ SCAN_INLINE void draw(std::uint64_t seed, std::uint32_t scan, const BlockAddress
     philox<bytes>(seed, words.of[0] + i, words.of[1] + i, words.of[2] + i, words.of[3] + i);
 }
 
-SCAN_INLINE void box_muller(const std::uint64_t* radius_words, const std::uint64_t* angle_words,
-                            double* __restrict first, double* __restrict second) {
-  constexpr double log_of_range = 22.180709777918249;  // 32 log 2
-  constexpr std::uint64_t quarter = 0x3fffffff;
+// sqrt(-2 ln u) of u = (word + 1/2) 2^-32 = m 2^(e - 32) with m about 1: of the two terms of the
+// logarithm, (32 - e) ln 2 - ln m, none cancels the other, so it is right to a few roundings of
+// itself and to that of m, 2^-24.
+SCAN_INLINE float radius_of(std::uint32_t word) {
+  constexpr std::uint32_t sqrt_half = 0x3f3504f3u, bias = 64;
+  const float x = static_cast<float>(static_cast<std::int32_t>(word >> 16)) * 65536.0F +
+                  (static_cast<float>(static_cast<std::int32_t>(word & 0xffffu)) + 0.5F);
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const std::uint32_t e = (bits - sqrt_half + (bias << 23)) >> 23;
+  const float m = std::bit_cast<float>(bits - (e << 23) + (bias << 23));
+  // ln m = 2 artanh s, |s| <= 0.172; the series' next term is 2 s^11 / 11 = 7e-10
+  const float s = (m - 1) / (m + 1), z = s * s;
+  const float series = 1 + z * (1.0F / 3 + z * (1.0F / 5 + z * (1.0F / 7 + z * (1.0F / 9))));
+  const auto halvings = static_cast<float>(32 + static_cast<std::int32_t>(bias - e));
+  const float square = 2 * (halvings * 0.69314718F - 2 * s * series);
+  return square * inverse_sqrt(square);
+}
+
+// Cosine and sine of (word + 1/2) 2^-32 turns less an eighth: quarters by the highest two bits and
+// an angle of at most pi / 4, where the series' next terms are x^12 / 12! = 1e-10 and x^11 / 11! =
+// 2e-9.
+SCAN_INLINE void turn(std::uint32_t word, float& cosine, float& sine) {
+  const auto place = static_cast<std::int32_t>(word & 0x3fffffffu) - 0x20000000;
+  const float x = (static_cast<float>(place) + 0.5F) * (1.5707963F * 0x1p-30F), z = x * x;
+  const float s =
+      x + x * z * (-1.0F / 6 + z * (1.0F / 120 + z * (-1.0F / 5040 + z * (1.0F / 362880))));
+  const float c =
+      1 + z * (-1.0F / 2 +
+               z * (1.0F / 24 + z * (-1.0F / 720 + z * (1.0F / 40320 + z * (-1.0F / 3628800)))));
+  const std::uint32_t quarters = word >> 30, odd = 0 - (quarters & 1);  // all bits
+  const auto c_bits = std::bit_cast<std::uint32_t>(c), s_bits = std::bit_cast<std::uint32_t>(s);
+  const std::uint32_t along = (c_bits & ~odd) | (s_bits & odd);
+  const std::uint32_t across = (s_bits & ~odd) | (c_bits & odd);
+  cosine = std::bit_cast<float>(along ^ (((quarters + 1) & 2) << 30));
+  sine = std::bit_cast<float>(across ^ ((quarters & 2) << 30));
+}
+
+SCAN_INLINE void box_muller(const std::uint64_t* __restrict radius_words,
+                            const std::uint64_t* __restrict angle_words, float* __restrict first,
+                            float* __restrict second) {
   for (std::size_t i = 0; i < lanes; ++i) {
-    const double square =
-        2 * (log_of_range - logarithm(to_double(radius_words[i]) + 0.5));  // > 2e-10
-    const double radius = square * inverse_sqrt(square);
-    const double t = (to_double(angle_words[i] & quarter) + 0.5) * 0x1p-30 - 0.5;
-    const Turned angle = turned(angle_words[i] >> 30, t);
-    first[i] = radius * angle.cosine;
-    second[i] = radius * angle.sine;
+    const float radius = radius_of(static_cast<std::uint32_t>(radius_words[i]));
+    float cosine, sine;
+    turn(static_cast<std::uint32_t>(angle_words[i]), cosine, sine);
+    first[i] = radius * cosine;
+    second[i] = radius * sine;
   }
 }
 
 template <unsigned bytes>
 SCAN_INLINE void normals_of(std::uint64_t seed, std::uint32_t scan, const BlockAddress* blocks,
-                            std::size_t count, double* normals) {
+                            std::size_t count, float* normals) {
   for (std::size_t first = 0; first < count; first += lanes) {
     const std::size_t some = std::min(lanes, count - first);
     Words words;
     draw<bytes>(seed, scan, blocks + first, some, words);
-    alignas(64) double values[4][lanes];
+    alignas(64) float values[4][lanes];
     box_muller(words.of[0], words.of[1], values[0], values[1]);
     box_muller(words.of[2], words.of[3], values[2], values[3]);
     for (std::size_t i = 0; i < some; ++i)
@@ -145,15 +179,15 @@ using WordsKernel = void(std::uint64_t seed, std::uint32_t scan, const BlockAddr
                          std::size_t count, std::uint32_t* words);
 
 void normals_plain(std::uint64_t seed, std::uint32_t scan, const BlockAddress* blocks,
-                   std::size_t count, double* normals) {
+                   std::size_t count, float* normals) {
   normals_of<16>(seed, scan, blocks, count, normals);
 }
 SCAN_AVX2 void normals_avx2(std::uint64_t seed, std::uint32_t scan, const BlockAddress* blocks,
-                            std::size_t count, double* normals) {
+                            std::size_t count, float* normals) {
   normals_of<32>(seed, scan, blocks, count, normals);
 }
 SCAN_AVX512 void normals_avx512(std::uint64_t seed, std::uint32_t scan, const BlockAddress* blocks,
-                                std::size_t count, double* normals) {
+                                std::size_t count, float* normals) {
   normals_of<64>(seed, scan, blocks, count, normals);
 }
 void words_plain(std::uint64_t seed, std::uint32_t scan, const BlockAddress* blocks,
@@ -180,7 +214,7 @@ void draw_words(std::uint64_t seed, std::uint32_t scan, std::span<const BlockAdd
 }
 
 void draw_normals(std::uint64_t seed, std::uint32_t scan, std::span<const BlockAddress> blocks,
-                  std::span<double> normals) {
+                  std::span<float> normals) {
   normals_versions.fastest()(seed, scan, blocks.data(), blocks.size(), normals.data());
 }
 

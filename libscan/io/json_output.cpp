@@ -119,7 +119,9 @@ ordered_json measurement_json(const Measurement& m) {
           {"limit", if_limited(number(m.limit.value_or(0)))},
           {"relation", if_limited(m.relation)},
           {"pass", m.pass},
-          {"reason", if_limited(m.reason)}};
+          {"reason", if_limited(m.reason)},
+          {"interval", m.interval ? ordered_json{number(m.interval->low), number(m.interval->high)}
+                                  : ordered_json(nullptr)}};
 }
 
 ordered_json verdict_json(const Verdict& verdict) {

@@ -12,22 +12,9 @@
 #include <system_error>
 #include <type_traits>
 
+#include "libscan/core/shortest.h"
+
 namespace scan {
-
-// The shortest text that reads back as the same number ("nan" and "inf" for those).
-template <class Number>
-void append_number(std::string& text, Number number) {
-  char buffer[32];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, number);
-  text.append(buffer, end);
-}
-
-template <class Number>
-std::string shortest(Number number) {
-  std::string text;
-  append_number(text, number);
-  return text;
-}
 
 // The whole of `word` as a number of this very type, correctly rounded; none if it is anything else
 // or lies outside the type's range. A number too small for the type becomes zero.

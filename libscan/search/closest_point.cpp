@@ -10,6 +10,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "libscan/search/batch.h"
 
 namespace scan {
 namespace {
@@ -68,8 +69,9 @@ struct MeshSearch::Tree {
     std::uint32_t begin = 0, end = 0;  // triangles of the subtree
     std::uint32_t right = 0;           // the left child follows its parent; 0: a leaf
   };
-  std::vector<Corners> corners;      // of the triangles, in leaf order
-  std::vector<std::uint32_t> index;  // original index of each
+  std::vector<Corners> corners;           // of the triangles, in leaf order
+  std::vector<std::uint32_t> index;       // original index of each
+  std::vector<std::uint32_t> leaf_place;  // of each original index
   std::vector<Node> nodes;
 
   static std::uint32_t middle_of(std::uint32_t begin, std::uint32_t end) {
@@ -137,14 +139,16 @@ struct MeshSearch::Tree {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
   };
 
+  void search_triangle(std::uint32_t i, const Eigen::Vector3d& query, Best& best) const {
+    const auto& [a, b, c] = corners[i];
+    const Eigen::Vector3d point = closest_point_on_triangle(query, a, b, c);
+    const double distance2 = (point - query).squaredNorm();
+    const bool tie = distance2 == best.distance2_m2 && index[i] < best.triangle;
+    if (distance2 < best.distance2_m2 || tie) best = {distance2, index[i], point};
+  }
+
   void search_leaf(const Node& node, const Eigen::Vector3d& query, Best& best) const {
-    for (std::uint32_t i = node.begin; i < node.end; ++i) {
-      const auto& [a, b, c] = corners[i];
-      const Eigen::Vector3d point = closest_point_on_triangle(query, a, b, c);
-      const double distance2 = (point - query).squaredNorm();
-      const bool tie = distance2 == best.distance2_m2 && index[i] < best.triangle;
-      if (distance2 < best.distance2_m2 || tie) best = {distance2, index[i], point};
-    }
+    for (std::uint32_t i = node.begin; i < node.end; ++i) search_triangle(i, query, best);
   }
 
   void search(std::uint32_t self, const Eigen::Vector3d& query, Best& best) const {
@@ -178,6 +182,8 @@ MeshSearch::MeshSearch(const Mesh& mesh) : tree_(std::make_unique<Tree>()) {
   tree_->corners.resize(count);
   tree_->nodes.resize(Tree::node_count(count));
   tree_->build(mesh, centres, 0, 0, count);
+  tree_->leaf_place.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) tree_->leaf_place[tree_->index[i]] = i;
   tree_->widen_boxes();
 }
 
@@ -185,10 +191,30 @@ MeshSearch::~MeshSearch() = default;
 MeshSearch::MeshSearch(MeshSearch&&) noexcept = default;
 MeshSearch& MeshSearch::operator=(MeshSearch&&) noexcept = default;
 
-ClosestPoint MeshSearch::closest(const Eigen::Vector3d& query) const {
+ClosestPoint MeshSearch::closest(const Eigen::Vector3d& query, std::uint32_t guess) const {
   Tree::Best best;
+  if (guess < tree_->leaf_place.size())
+    tree_->search_triangle(tree_->leaf_place[guess], query, best);
   tree_->search(0, query, best);
   return {best.point, best.triangle, std::sqrt(best.distance2_m2)};
+}
+
+std::vector<ClosestPoint> closest_of_each(const MeshSearch& search,
+                                          std::span<const Eigen::Vector3d> queries) {
+  const std::vector<std::uint32_t> order = curve_order(queries);
+  std::vector<ClosestPoint> found(queries.size());
+  parallel_chunks(queries.size(), queries_per_task, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t guess = no_triangle;
+    for (std::size_t place = begin; place < end; ++place) {
+      const std::uint32_t i = order[place];
+      if (queries[i].allFinite())
+        found[i] = search.closest(queries[i], guess);
+      else
+        found[i] = {queries[i], no_triangle, std::numeric_limits<double>::infinity()};
+      guess = found[i].triangle;
+    }
+  });
+  return found;
 }
 
 }  // namespace scan

@@ -3,7 +3,10 @@
 // The nearest point of a triangle mesh, exact in double precision.
 #pragma once
 
+#include <limits>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "libscan/core/mesh.h"
 
@@ -22,6 +25,8 @@ struct ClosestPoint {
 Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& x, const Eigen::Vector3d& a,
                                           const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
+inline constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
+
 // A bounding-volume tree over a mesh's triangles.
 class MeshSearch {
  public:
@@ -31,12 +36,19 @@ class MeshSearch {
   MeshSearch(MeshSearch&&) noexcept;
   MeshSearch& operator=(MeshSearch&&) noexcept;
 
-  // Nearest point; the lowest triangle among equally near ones.
-  ClosestPoint closest(const Eigen::Vector3d& query) const;
+  // Nearest point; the lowest triangle among equally near ones. `guess`: a triangle that may be the
+  // nearest, as that of a query nearby; it makes the search quicker and never changes the answer.
+  ClosestPoint closest(const Eigen::Vector3d& query, std::uint32_t guess = no_triangle) const;
 
  private:
   struct Tree;
   std::unique_ptr<Tree> tree_;
 };
+
+// closest() of each query, on all threads and along a curve that fills space, so that each query's
+// guess is the answer of the one before. Queries that are not finite get triangle no_triangle and
+// an infinite distance.
+std::vector<ClosestPoint> closest_of_each(const MeshSearch& search,
+                                          std::span<const Eigen::Vector3d> queries);
 
 }  // namespace scan

@@ -50,6 +50,16 @@ Eigen::Vector3d moved_centroid(std::span<const Pose> poses, PointLists points) {
   return origin + sum / count;
 }
 
+PoseError error_of(const Pose& estimated, const Pose& truth,
+                   const std::vector<Eigen::Vector3d>& points) {
+  const Eigen::Vector3d c = centroid(points);
+  double sum_m2 = 0;
+  for (const auto& x : points) sum_m2 += (estimated * x - truth * x).squaredNorm();
+  return {.rotation_rad = rotation_distance_rad(estimated, truth),
+          .translation_m = (estimated * c - truth * c).norm(),
+          .moved_points_rms_m = std::sqrt(sum_m2 / static_cast<double>(points.size()))};
+}
+
 }  // namespace
 
 // Kabsch 1976: the rotation that maximises trace(R^T sum b a^T) of the centred pairs.
@@ -74,17 +84,38 @@ std::vector<PoseError> pose_errors(std::span<const Pose> estimated, std::span<co
                                    PointLists points) {
   const Pose true_from_estimated = gauge(estimated, truth, points);
   std::vector<PoseError> errors;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const Pose moved = true_from_estimated * estimated[i];
-    const Eigen::Vector3d c = centroid(points[i]);
-    double sum_m2 = 0;
-    for (const auto& x : points[i]) sum_m2 += (moved * x - truth[i] * x).squaredNorm();
-    errors.push_back(
-        {.rotation_rad = rotation_distance_rad(moved, truth[i]),
-         .translation_m = (moved * c - truth[i] * c).norm(),
-         .moved_points_rms_m = std::sqrt(sum_m2 / static_cast<double>(points[i].size()))});
-  }
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    errors.push_back(error_of(true_from_estimated * estimated[i], truth[i], points[i]));
   return errors;
+}
+
+std::vector<PoseError> relative_pose_errors(std::span<const Pose> estimated,
+                                            std::span<const Pose> truth, PointLists points) {
+  check_input(estimated, truth, points);
+  std::vector<PoseError> errors;
+  for (std::size_t i = 0; i + 1 < truth.size(); ++i)
+    errors.push_back(error_of(estimated[i + 1].inverse() * estimated[i],
+                              truth[i + 1].inverse() * truth[i], points[i]));
+  return errors;
+}
+
+std::vector<Measurement> summarise_relative(const std::vector<PoseError>& errors) {
+  if (errors.empty()) return {};
+  std::vector<double> rotations_rad, translations_m;
+  for (const PoseError& error : errors) {
+    rotations_rad.push_back(error.rotation_rad);
+    translations_m.push_back(error.translation_m);
+  }
+  const auto figure = [&](const char* name, double value, const char* unit, const char* over) {
+    return Measurement{
+        .name = name, .value = value, .unit = unit, .over = over, .count = errors.size()};
+  };
+  const char* largest = "largest over pairs of neighbouring scans";
+  const char* average = "mean over pairs of neighbouring scans";
+  return {figure("relative_rotation_error", quantile(rotations_rad, 1), "rad", largest),
+          figure("relative_translation_error", quantile(translations_m, 1), "m", largest),
+          figure("relative_rotation_error_mean", mean(rotations_rad), "rad", average),
+          figure("relative_translation_error_mean", mean(translations_m), "m", average)};
 }
 
 std::vector<Measurement> summarise(const std::vector<PoseError>& errors) {

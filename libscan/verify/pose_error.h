@@ -18,8 +18,8 @@ struct PoseError {
 };
 
 // Per scan, after the one rigid motion of the whole set (weighted by points) that fits estimated to
-// true poses best, since the world frame of an alignment is free. `points_in_scanner[i]` are points of
-// scan i at which the error is felt.
+// true poses best, since the world frame of an alignment is free. `points_in_scanner[i]` are points
+// of scan i at which the error is felt.
 std::vector<PoseError> pose_errors(std::span<const Pose> estimated, std::span<const Pose> truth,
                                    std::span<const std::vector<Eigen::Vector3d>> points_in_scanner);
 
@@ -29,8 +29,19 @@ std::vector<PoseError> pose_errors(std::span<const Pose> estimated, std::span<co
 Pose gauge(std::span<const Pose> estimated, std::span<const Pose> truth,
            std::span<const std::vector<Eigen::Vector3d>> points_in_scanner);
 
-// rotation_error, translation_error, pose_error_rms (largest over scans) and their means over scans,
-// rotation_error_mean, translation_error_mean, pose_error_rms_mean.
+// Of the motion between each two neighbouring scans of the list, which needs no world frame: how
+// far next_from_this is off. `translation_m` is felt at the centroid of the earlier scan's points.
+// Empty for a single scan. Throws as pose_errors does.
+std::vector<PoseError> relative_pose_errors(
+    std::span<const Pose> estimated, std::span<const Pose> truth,
+    std::span<const std::vector<Eigen::Vector3d>> points_in_scanner);
+
+// relative_rotation_error, relative_translation_error (largest over pairs of neighbouring scans)
+// and their means; nothing for no errors.
+std::vector<Measurement> summarise_relative(const std::vector<PoseError>& errors);
+
+// rotation_error, translation_error, pose_error_rms (largest over scans) and their means over
+// scans, rotation_error_mean, translation_error_mean, pose_error_rms_mean.
 std::vector<Measurement> summarise(const std::vector<PoseError>& errors);
 
 }  // namespace scan

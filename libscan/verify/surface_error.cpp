@@ -10,6 +10,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "libscan/search/batch.h"
 #include "libscan/search/closest_point.h"
 #include "libscan/search/kd_tree.h"
 #include "libscan/verify/statistics.h"
@@ -17,15 +18,20 @@
 namespace scan {
 namespace {
 
-using DistanceTo = std::function<double(const Eigen::Vector3d&)>;
+constexpr double widest_share = 0.01;
+constexpr double least_share = 1e-6;  // of the diagonal: errors below it need no digits
+constexpr std::size_t most_doublings = 3;
+
+using Distances = std::function<std::vector<double>(const std::vector<Eigen::Vector3d>& places)>;
 
 // What is compared: points with normals (or none) that stand for the measured surface, and the
 // distance of any place to it.
 struct Measured {
   std::vector<Eigen::Vector3d> points = {};
   std::vector<Eigen::Vector3d> normals = {};  // (0,0,0): unknown
-  DistanceTo distance_m;
-  std::string over;  // what `points` are
+  Distances distances_m;
+  std::string over;             // what `points` are
+  Values values = Values::all;  // whether they are all there is
   Bounds bounds;
 };
 
@@ -40,17 +46,14 @@ struct Accuracy {
 };
 
 Accuracy accuracy_of(const Measured& measured, const TrueSurface& truth) {
-  const TrueDistance distance(truth);
-  const std::size_t count = measured.points.size();
-  std::vector<double> errors_m(count), angles_rad(count);
-  parallel_for(count, [&](std::size_t i) {
-    const TrueDistance::Nearest nearest = distance.nearest(measured.points[i]);
-    errors_m[i] = std::abs(nearest.signed_distance_m);
-    if (!measured.normals.empty()) angles_rad[i] = angle_rad(measured.normals[i], nearest.normal);
-  });
-  Accuracy accuracy{std::move(errors_m), {}};
-  for (std::size_t i = 0; i < measured.normals.size(); ++i)
-    if (measured.normals[i].norm() > 0.5) accuracy.normal_errors_rad.push_back(angles_rad[i]);
+  const auto nearest = TrueDistance(truth).nearest_of_each(measured.points);
+  Accuracy accuracy;
+  accuracy.errors_m.reserve(nearest.size());
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    accuracy.errors_m.push_back(std::abs(nearest[i].signed_distance_m));
+    if (!measured.normals.empty() && measured.normals[i].norm() > 0.5)
+      accuracy.normal_errors_rad.push_back(angle_rad(measured.normals[i], nearest[i].normal));
+  }
   return accuracy;
 }
 
@@ -86,10 +89,10 @@ Bounds plane_region(const Measured& measured, const TrueSurface& truth,
 
 std::vector<double> completeness_of(const Measured& measured,
                                     const std::vector<SurfaceSample>& samples) {
-  std::vector<double> errors_m(samples.size());
-  parallel_for(samples.size(),
-               [&](std::size_t i) { errors_m[i] = measured.distance_m(samples[i].point); });
-  return errors_m;
+  std::vector<Eigen::Vector3d> places;
+  places.reserve(samples.size());
+  for (const SurfaceSample& sample : samples) places.push_back(sample.point);
+  return measured.distances_m(places);
 }
 
 double share_within(const std::vector<double>& errors_m, double threshold_m) {
@@ -117,6 +120,16 @@ Measurement f_score(const std::vector<double>& accuracy_m,
           .count = accuracy_m.size() + completeness_m.size()};
 }
 
+// Of the two surfaces, from below: the farthest sample of either.
+Measurement hausdorff(const std::vector<double>& accuracy_m,
+                      const std::vector<double>& completeness_m) {
+  return {.name = "hausdorff",
+          .value = std::max(quantile(accuracy_m, 1), quantile(completeness_m, 1)),
+          .unit = "m",
+          .over = "the farthest sample of either surface from the other",
+          .count = accuracy_m.size() + completeness_m.size()};
+}
+
 std::vector<Measurement> compare(const Measured& measured, const TrueSurface& truth,
                                  const SurfaceErrorOptions& options) {
   const Accuracy accuracy = accuracy_of(measured, truth);
@@ -126,20 +139,35 @@ std::vector<Measurement> compare(const Measured& measured, const TrueSurface& tr
                                                              : default_threshold_m(truth_samples);
   const auto completeness_m = completeness_of(measured, seen_only(truth_samples, options));
 
-  auto figures = summary("accuracy", accuracy.errors_m, "m", measured.over);
+  auto figures = summary("accuracy", accuracy.errors_m, "m", measured.over, measured.values);
   const auto other_way =
       summary("completeness", completeness_m, "m",
               options.seen_points.empty() ? "samples of the true surface, uniform by area"
-                                          : "samples of the true surface near seen points");
+                                          : "samples of the true surface near seen points",
+              Values::drawn);
   figures.insert(figures.end(), other_way.begin(), other_way.end());
+  figures.push_back(hausdorff(accuracy.errors_m, completeness_m));
   figures.push_back(f_score(accuracy.errors_m, completeness_m, threshold_m));
   if (!accuracy.normal_errors_rad.empty())
     figures.push_back({.name = "normal_error_mean",
                        .value = mean(accuracy.normal_errors_rad),
                        .unit = "rad",
                        .over = measured.over,
-                       .count = accuracy.normal_errors_rad.size()});
+                       .count = accuracy.normal_errors_rad.size(),
+                       .interval = measured.values == Values::drawn
+                                       ? mean_interval(accuracy.normal_errors_rad)
+                                       : std::nullopt});
   return figures;
+}
+
+// Whether the means of both ways are known to `widest_share` of themselves, or of what matters.
+bool is_settled(const std::vector<Measurement>& figures, double diagonal_m) {
+  return std::none_of(figures.begin(), figures.end(), [&](const Measurement& m) {
+    const bool is_mean = m.name == "accuracy_mean" || m.name == "completeness_mean";
+    const double matters_m = std::max(std::abs(m.value), least_share * diagonal_m);
+    return is_mean && m.interval &&
+           m.interval->high - m.interval->low > 2 * widest_share * matters_m;
+  });
 }
 
 void check_options(const SurfaceErrorOptions& options) {
@@ -158,15 +186,32 @@ std::vector<Measurement> surface_error(const Mesh& mesh, const TrueSurface& trut
   check(mesh);
   if (mesh.empty()) throw Error(Trouble::input, "measured surface: no triangles");
   const MeshSearch search(mesh);
-  Measured measured{
-      .distance_m = [&](const Eigen::Vector3d& x) { return search.closest(x).distance_m; },
-      .over = "samples of the measured surface, uniform by area",
-      .bounds = bounds_of(mesh.vertices)};
-  for (const SurfaceSample& sample : sample_surface(mesh, options.samples, options.seed)) {
-    measured.points.push_back(sample.point);
-    measured.normals.push_back(sample.normal);
-  }
-  return compare(measured, truth, options);
+  const Bounds bounds = bounds_of(mesh.vertices);
+  const Distances to_mesh = [&](const std::vector<Eigen::Vector3d>& places) {
+    std::vector<double> distances_m;
+    distances_m.reserve(places.size());
+    for (const ClosestPoint& closest : closest_of_each(search, places))
+      distances_m.push_back(closest.distance_m);
+    return distances_m;
+  };
+  const auto with_samples = [&](std::size_t samples) {
+    Measured measured{.distances_m = to_mesh,
+                      .over = "samples of the measured surface, uniform by area",
+                      .values = Values::drawn,
+                      .bounds = bounds};
+    for (const SurfaceSample& sample : sample_surface(mesh, samples, options.seed)) {
+      measured.points.push_back(sample.point);
+      measured.normals.push_back(sample.normal);
+    }
+    SurfaceErrorOptions with = options;
+    with.samples = samples;
+    return compare(measured, truth, with);
+  };
+  auto figures = with_samples(options.samples);
+  for (std::size_t k = 1; k <= most_doublings && !is_settled(figures, bounds.diagonal().norm());
+       ++k)
+    figures = with_samples(options.samples << k);
+  return figures;
 }
 
 std::vector<Measurement> cloud_error(const PointCloud& cloud, const TrueSurface& truth,
@@ -176,14 +221,21 @@ std::vector<Measurement> cloud_error(const PointCloud& cloud, const TrueSurface&
   const PointCloud finite = subset(cloud, finite_points(cloud));
   if (finite.empty()) throw Error(Trouble::input, "measured cloud: no finite point");
   const KdTree search(finite.points);
-  return compare(
-      {.points = finite.points,
-       .normals = finite.normals,
-       .distance_m =
-           [&](const Eigen::Vector3d& x) { return std::sqrt(search.nearest(x)->distance2_m2); },
-       .over = "measured points",
-       .bounds = bounds_of(finite.points)},
-      truth, options);
+  const Distances to_points = [&](const std::vector<Eigen::Vector3d>& places) {
+    std::vector<Neighbour> found;
+    nearest_of_each(search, places, unlimited_m, curve_order(places), found);
+    std::vector<double> distances_m;
+    distances_m.reserve(found.size());
+    for (const Neighbour& neighbour : found)
+      distances_m.push_back(std::sqrt(neighbour.distance2_m2));
+    return distances_m;
+  };
+  return compare({.points = finite.points,
+                  .normals = finite.normals,
+                  .distances_m = to_points,
+                  .over = "measured points",
+                  .bounds = bounds_of(finite.points)},
+                 truth, options);
 }
 
 }  // namespace scan

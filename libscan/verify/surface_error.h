@@ -23,10 +23,12 @@ class TrueDistance {
 
   struct Nearest {
     Eigen::Vector3d point;
-    Eigen::Vector3d normal;  // outward, unit
+    Eigen::Vector3d normal;    // outward, unit
     double signed_distance_m;  // positive outside, by the side of the normal
   };
   Nearest nearest(const Eigen::Vector3d& x_in_world) const;
+  // Of each point, on all threads; NaN for points that are not finite. Quicker than one by one.
+  std::vector<Nearest> nearest_of_each(std::span<const Eigen::Vector3d> points_in_world) const;
 
  private:
   struct Parts;
@@ -34,7 +36,9 @@ class TrueDistance {
 };
 
 struct SurfaceErrorOptions {
-  std::size_t samples = 200'000;   // drawn on each surface that is not a point set
+  // Drawn on each surface that is not a point set; for meshes doubled up to three times until the
+  // 95 % intervals of both means are within 1 % of them, or of 1e-6 of the diagonal.
+  std::size_t samples = 200'000;
   std::uint64_t seed = 1;
   double f_score_threshold_m = 0;  // 0: one hundredth of the truth's bounding-box diagonal
   // Completeness counts only truth samples within this distance of some `seen` point; empty: all.
@@ -42,9 +46,10 @@ struct SurfaceErrorOptions {
   double seen_distance_m = 0;
 };
 
-// accuracy_mean, _rms, _p95, _max (measured to truth, unsigned), completeness_mean, _rms, _p95, _max
-// (truth to measured), f_score, normal_error_mean (rad, between oriented normals at the measured
-// samples; only if normals are known). Throws scan::Error (input) for nothing measured, (computation)
+// accuracy_mean, _rms, _median, _p95, _p997, _max (measured to truth, unsigned), the same of
+// completeness (truth to measured), hausdorff (the larger of the two maxima), f_score,
+// normal_error_mean (rad, between oriented normals at the measured samples; only if normals are
+// known). Throws scan::Error (input) for nothing measured, (computation)
 // if no part of the truth was seen.
 std::vector<Measurement> surface_error(const Mesh& measured, const TrueSurface& truth,
                                        const SurfaceErrorOptions& options = {});
@@ -62,10 +67,10 @@ std::vector<double> deviations_m(std::span<const Eigen::Vector3d> points, const 
 std::vector<SurfaceSample> sample_truth(const TrueSurface& truth, std::size_t count,
                                         std::uint64_t seed, const Bounds& plane_region = Bounds());
 
-// range_error_bias, range_error_rms, range_error_p95 (m, along the ray), ray_hit_fraction of the rays
-// that truly hit, and normalised_range_error_rms (range error over sigma; 1 is honest; only with a
-// positive sigma somewhere). Of several points on one ray the nearest counts. Throws scan::Error
-// (input) for a ray number that the truth does not have.
+// range_error_bias, range_error_rms, range_error_p95 (m, along the ray), ray_hit_fraction of the
+// rays that truly hit, and normalised_range_error_rms (range error over sigma; 1 is honest; only
+// with a positive sigma somewhere). Of several points on one ray the nearest counts. Throws
+// scan::Error (input) for a ray number that the truth does not have.
 std::vector<Measurement> range_error(const PointCloud& cloud_in_scanner,
                                      std::span<const std::uint32_t> ray, const ScanTruth& truth);
 

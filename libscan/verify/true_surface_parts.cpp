@@ -100,11 +100,12 @@ Eigen::Vector3d MeshPart::pseudo_normal(std::uint32_t triangle,
   return area.normalized();
 }
 
-PartNearest MeshPart::nearest(const Eigen::Vector3d& x) const {
-  const ClosestPoint closest = search_.closest(x);
+PartNearest MeshPart::nearest(const Eigen::Vector3d& x, std::uint32_t guess) const {
+  const ClosestPoint closest = search_.closest(x, guess);
   const Eigen::Vector3d normal = pseudo_normal(closest.triangle, closest.point);
   const bool behind = normal.dot(x - closest.point) < 0;
-  return {closest.point, normal, behind ? -closest.distance_m : closest.distance_m};
+  return {closest.point, normal, behind ? -closest.distance_m : closest.distance_m,
+          closest.triangle};
 }
 
 TrueSurfaceParts::TrueSurfaceParts(const TrueSurface& surface) : shapes(surface.shapes) {

@@ -16,6 +16,7 @@ struct PartNearest {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
   double signed_distance_m = 0;
+  std::uint32_t triangle = no_triangle;  // of a mesh
 };
 
 // A mesh with its search tree and the pseudo-normals that tell inside from outside at edges and
@@ -23,7 +24,8 @@ struct PartNearest {
 class MeshPart {
  public:
   explicit MeshPart(const Mesh& mesh);
-  PartNearest nearest(const Eigen::Vector3d& x) const;
+  // `guess`: as for MeshSearch::closest.
+  PartNearest nearest(const Eigen::Vector3d& x, std::uint32_t guess = no_triangle) const;
   bool is_solid() const { return solid_; }  // watertight, so it has an inside
   const Mesh& mesh() const { return mesh_; }
 

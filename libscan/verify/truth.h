@@ -18,6 +18,9 @@ struct TrueSurface {
   std::vector<Mesh> meshes;
 };
 
+// Of all parts; infinite with a plane.
+Bounds bounds_of(const TrueSurface& surface);
+
 // Where a ray's centre first meets the scene; `object` is -1 (and point NaN) for a ray into nothing.
 struct RayTruth {
   Eigen::Vector3d point_in_scanner =

@@ -9,7 +9,14 @@
 
 namespace scan {
 
+struct Interval {
+  double low = 0;
+  double high = 0;
+};
+
 // One figure. `over` says what it was taken over (sample, denominator); `count` how many entered.
+// Where it is an estimate from samples drawn on a surface, `interval` holds the figure of the whole
+// surface with 95 % confidence.
 struct Measurement {
   std::string name;
   double value = 0;
@@ -19,7 +26,8 @@ struct Measurement {
   std::optional<double> limit = {};
   std::string relation = {};  // "<=", ">=" or "==" when there is a limit
   std::string reason = {};    // of the limit
-  bool pass = true;      // true without a limit; NaN never passes a limit
+  bool pass = true;           // true without a limit; NaN never passes a limit
+  std::optional<Interval> interval = {};
 };
 
 // `value` and `unit` in SI (metres, radians) as Measurement has them.
@@ -36,8 +44,8 @@ struct Verdict {
 };
 
 // Attaches limits to the measurements of the same name; a measurement with several limits is listed
-// once for each. Throws scan::Error (input) for a limit whose name was not measured, with the nearest
-// name as a hint, and for a relation that is none of the three or a limit that is NaN.
+// once for each. Throws scan::Error (input) for a limit whose name was not measured, with the
+// nearest name as a hint, and for a relation that is none of the three or a limit that is NaN.
 Verdict judge(std::vector<Measurement> measurements, const std::vector<Limit>& limits);
 
 }  // namespace scan

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "libscan/core/error.h"
+#include "libscan/core/shortest.h"
 #include "synth/bsdf/kinds.h"
 
 namespace scan::synth {
@@ -14,8 +15,8 @@ namespace {
 // The name of the field, its value, and the limits it must keep (NaN keeps none).
 void check_field(const std::string& field, double value, double low, double high) {
   if (value >= low && value <= high) return;
-  throw Error(Trouble::input, field + " is " + std::to_string(value) + ", must be from " +
-                                  std::to_string(low) + " to " + std::to_string(high));
+  throw Error(Trouble::input, field + " is " + shortest(value) + ", must be from " + shortest(low) +
+                                  " to " + shortest(high));
 }
 
 // The model's fit gives more light than it gets at grazing angles if the faces are whiter: its

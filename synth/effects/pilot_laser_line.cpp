@@ -6,11 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "libscan/core/parallel.h"
 #include "synth/effects/convex.h"
 #include "synth/effects/laser_line_errors.h"
+#include "synth/effects/pilot_rounds.h"
 #include "synth/effects/stripe_light.h"
-#include "synth/effects/weight.h"
 
 namespace scan::synth {
 namespace {
@@ -142,7 +141,7 @@ std::optional<Seen> see(const LaserView& view, const SheetHit& lit) {
 
 // Bodies and fog, and the light of a few paths.
 void weigh_light(const PilotScan& scan, const LaserView& view, const SheetHit& lit,
-                 std::uint64_t index, Seen& seen) {
+                 std::uint64_t index, bool with_paths, Seen& seen) {
   StripePoint& p = seen.point;
   const Scene& scene = scan.scene;
   const Eigen::Vector3d in = (lit.x_in_camera - scan.sheet.origin).normalized();
@@ -158,26 +157,12 @@ void weigh_light(const PilotScan& scan, const LaserView& view, const SheetHit& l
   }
   const double window = window_px(stripe_sigma_px(p));
   look_around(view, lit, window, seen);
-  if (light_meets_once(scene, view.world_from_camera.translation())) return;
+  if (!with_paths || light_meets_once(scene, view.world_from_camera.translation())) return;
   const LaserView whole_view{scan.scanner, scan.sheet, scan.opaque, view.world_from_camera};
   seen.light = stripe_light(whole_view, scan.transport, lit.pixel, window, index);
   p.uneven_e = seen.light.uneven_e;
   p.elsewhere_e = seen.light.elsewhere_e;
   p.other_e += seen.light.others_e;
-}
-
-// Where nothing is seen behind clear bodies, these themselves.
-std::optional<Seen> follow(const PilotScan& scan, const Pose& world_from_camera, double angle_rad,
-                           std::uint64_t index) {
-  for (const RayCaster* caster : {&scan.solid, &scan.opaque}) {
-    const LaserView view{scan.scanner, scan.sheet, *caster, world_from_camera};
-    const SheetHit lit = view.shine(angle_rad, 0);
-    std::optional<Seen> seen = see(view, lit);
-    if (!seen) continue;
-    weigh_light(scan, view, lit, index, *seen);
-    return seen;
-  }
-  return std::nullopt;
 }
 
 PilotRay pilot_ray(const LaserLine& device, const Seen& seen) {
@@ -193,6 +178,20 @@ PilotRay pilot_ray(const LaserLine& device, const Seen& seen) {
   for (const Effect effect : all_effects())
     ray.left_out_m[static_cast<std::size_t>(effect)] = left_out_m(device, p, effect);
   return ray;
+}
+
+// Where nothing is seen behind clear bodies, these themselves.
+std::optional<PilotRay> follow(const PilotScan& scan, const Pose& world_from_camera,
+                               double angle_rad, std::uint64_t index, bool with_paths) {
+  for (const RayCaster* caster : {&scan.solid, &scan.opaque}) {
+    const LaserView view{scan.scanner, scan.sheet, *caster, world_from_camera};
+    const SheetHit lit = view.shine(angle_rad, 0);
+    std::optional<Seen> seen = see(view, lit);
+    if (!seen) continue;
+    weigh_light(scan, view, lit, index, with_paths, *seen);
+    return pilot_ray(scan.scanner, *seen);
+  }
+  return std::nullopt;
 }
 
 template <class Test>
@@ -223,14 +222,11 @@ std::vector<PilotRay> pilot(const LaserLine& scanner, const RayCaster& caster,
       .has_smooth = any_object(scene, [](const Material& m) { return has_delta(m.bsdf); })};
   const std::vector<Pose> poses = scanner_from_camera(scanner);
   const std::vector<Place> all = places(scanner, rays);
-  std::vector<std::optional<Seen>> seen(all.size());
-  parallel_for(all.size(), [&](std::size_t i) {
-    seen[i] = follow(scan, world_from_scanner * poses[all[i].step], all[i].angle_rad, i);
+  EffectSet by_paths = {Effect::interreflection};
+  by_paths.set(Effect::scene_lights, scanner.electrons_per_w_m2 > 0 && !scene.lights.empty());
+  return look_in_rounds(all.size(), by_paths, [&](std::size_t i, bool with_paths) {
+    return follow(scan, world_from_scanner * poses[all[i].step], all[i].angle_rad, i, with_paths);
   });
-  std::vector<PilotRay> found;
-  for (const auto& each : seen)
-    if (each) found.push_back(pilot_ray(scanner, *each));
-  return found;
 }
 
 }  // namespace scan::synth

@@ -22,7 +22,7 @@ namespace {
 
 using std::numbers::pi;
 constexpr int paths_per_ray = 64;
-constexpr int paths_per_lone_ray = 4;    // where all light is direct
+constexpr int paths_per_lone_ray = 1;    // where all light is direct
 constexpr double no_direct_light = 1e6;  // indirect share where there is indirect light alone
 
 double kappa(double frequency_hz) {

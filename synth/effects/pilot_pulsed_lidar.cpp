@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a pulsed lidar's pilot rays meet, and how far each effect moves the range there.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "libscan/core/parallel.h"
 #include "libscan/core/units.h"
 #include "synth/effects/convex.h"
-#include "synth/effects/weight.h"
+#include "synth/effects/echo_light.h"
+#include "synth/effects/pilot_rounds.h"
 #include "synth/medium/diffusion.h"
 #include "synth/scanners/first_surface.h"
 #include "synth/scanners/pulsed_lidar_fog.h"
@@ -22,7 +21,6 @@ namespace {
 
 using std::numbers::pi;
 constexpr double half_c = speed_of_light_m_s / 2;
-constexpr int paths_per_ray = 32;
 constexpr double sigmas = 3;  // of noise that counts as its bound
 
 double& left_out(PilotRay& ray, Effect effect) {
@@ -61,64 +59,18 @@ PilotScan prepare(const PulsedLidar& s, const RayCaster& caster, const RayCaster
   return scan;
 }
 
-// The light of a few paths that does not come straight back. `late_e_m`: electrons times extra
-// one-way length of what comes over two or more surfaces within the window of the direct echo's
-// fit; later light is another echo.
-struct PilotLight {
-  double range_m = 0, window_m = 0, known_m = 0;
-  double indirect_e = 0, extra_e_m = 0, late_e_m = 0, lamps_e = 0;
-
-  void device_light(double electrons, double path_m, int scatterings) {
-    if (scatterings == 1 && path_m <= known_m) return;
-    const double extra_m = std::max(path_m / 2 - range_m, 0.0);
-    indirect_e += electrons;
-    extra_e_m += electrons * extra_m;
-    if (scatterings > 1 && extra_m <= window_m) late_e_m += electrons * extra_m;
-  }
-  void other_light(double electrons) { lamps_e += electrons; }
-};
-
-using Streams = std::array<PilotLight, 4>;
-
-// Mean of one of its sums over paths with three standard errors, from the scatter of the streams.
-double at_most(const Streams& streams, double PilotLight::*sum) {
-  double mean = 0, scatter = 0;
-  for (const PilotLight& stream : streams) mean += stream.*sum / 4;
-  for (const PilotLight& stream : streams) scatter += std::pow(stream.*sum - mean, 2);
-  return (mean + 3 * std::sqrt(scatter / 12)) / (paths_per_ray / 4.0);
-}
-
-Streams trace_streams(const PilotScan& scan, const Eigen::Vector3d& direction, std::size_t index,
-                      const PilotLight& start) {
-  const BeamLight light = beam_light(scan.scanner, scan.caster, scan.world_from_scanner, direction);
-  Streams streams;
-  for (std::uint32_t k = 0; k < streams.size(); ++k) {
-    SampleSequence random(1, 0, index, k);
-    streams[k] = start;
-    for (int i = 0; i < paths_per_ray / 4; ++i) {
-      random.start(i);
-      const Ray view{.origin = light.origin, .direction = light.view(random.next_2d())};
-      streams[k].known_m = straight_way_m(scan.caster, view);
-      trace_path(scan.transport, view, light, random, streams[k]);
-    }
-  }
-  return streams;
-}
-
 void weigh_paths(const PilotScan& scan, const Eigen::Vector3d& direction, std::size_t index,
                  double direct_e, PilotRay& ray) {
   const PulsedLidar& s = scan.scanner;
   const EchoNoise noise = echo_noise(s, direct_e);
-  const Streams streams = trace_streams(
-      scan, direction, index, {.range_m = ray.range_m, .window_m = noise.half_window_m()});
-  const double indirect_e = at_most(streams, &PilotLight::indirect_e);
-  if (indirect_e > 0) {
-    ray.indirect_share = indirect_e / noise.total_e;
-    ray.indirect_extra_m = at_most(streams, &PilotLight::extra_e_m) / indirect_e;
-    left_out(ray, Effect::interreflection) =
-        at_most(streams, &PilotLight::late_e_m) / (noise.total_e + indirect_e);
+  const EchoLight light = echo_light(s, scan.transport, scan.world_from_scanner, direction, index,
+                                     ray.range_m, noise.half_window_m());
+  if (light.indirect_e > 0) {
+    ray.indirect_share = light.indirect_e / noise.total_e;
+    ray.indirect_extra_m = light.extra_e_m / light.indirect_e;
+    left_out(ray, Effect::interreflection) = light.late_e_m / (noise.total_e + light.indirect_e);
   }
-  const double lamps_e = s.electrons_per_w_m2 * at_most(streams, &PilotLight::lamps_e);
+  const double lamps_e = s.electrons_per_w_m2 * light.lamps_e;
   const double floor_e2 = floor_variance_e2(s);
   left_out(ray, Effect::scene_lights) =
       sigmas * (noise.all_m(floor_e2 + lamps_e) - noise.all_m(floor_e2));
@@ -244,8 +196,14 @@ void weigh_stay(const Material& material, const EchoNoise& echo, PilotRay& ray) 
   left_out(ray, Effect::subsurface) = std::min(path_m / 2, echo.half_window_m());
 }
 
+bool any_transmissive(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+    return is_transmissive(scene.materials[object.material].bsdf);
+  });
+}
+
 std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direction,
-                             std::size_t index) {
+                             std::size_t index, bool with_paths) {
   const PulsedLidar& s = scan.scanner;
   const auto seen = first_surface(scan.solid, scan.world_from_scanner, {.direction = direction});
   if (!seen) return std::nullopt;
@@ -271,7 +229,7 @@ std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direc
   weigh_walk(s, noise, ray);
   const auto& object = scan.solid.scene().objects[seen->hit.object];
   weigh_stay(scene.materials[object.material], noise, ray);
-  if (!light_meets_once(scene, scan.world_from_scanner.translation()))
+  if (with_paths && !light_meets_once(scene, scan.world_from_scanner.translation()))
     weigh_paths(scan, direction, index, electrons, ray);
   return ray;
 }
@@ -281,25 +239,25 @@ std::optional<PilotRay> look(const PilotScan& scan, const Eigen::Vector3d& direc
 std::vector<PilotRay> pilot(const PulsedLidar& scanner, const RayCaster& caster,
                             const Pose& world_from_scanner, int rays) {
   check(scanner);
-  const RayCaster solid(simplified(without_clear_objects(caster.scene()),
-                                   EffectSet::all().without(Effect::subsurface)));
-  const PilotScan scan = prepare(scanner, caster, solid, world_from_scanner);
+  const Scene& scene = caster.scene();
+  std::optional<RayCaster> solid;  // where it differs from the scene
+  if (any_transmissive(scene))
+    solid.emplace(
+        simplified(without_clear_objects(scene), EffectSet::all().without(Effect::subsurface)));
+  const PilotScan scan = prepare(scanner, caster, solid ? *solid : caster, world_from_scanner);
   const std::vector<Eigen::Vector3d> directions = ray_directions(scanner);
   const RayGrid grid = ray_grid(scanner);
   const auto count = std::min(directions.size(), static_cast<std::size_t>(std::max(rays, 1)));
-  std::vector<std::optional<PilotRay>> seen(count);
-  parallel_for(count, [&](std::size_t i) {
+  EffectSet by_paths = {Effect::interreflection};
+  by_paths.set(Effect::scene_lights, scanner.electrons_per_w_m2 > 0 && !scene.lights.empty());
+  return look_in_rounds(count, by_paths, [&](std::size_t i, bool with_paths) {
     // Spread evenly over rows and columns (Roberts' sequence, by the plastic number).
     const double row = std::fmod(0.5 + 0.7548776662466927 * static_cast<double>(i), 1);
     const double column = std::fmod(0.5 + 0.5698402909980532 * static_cast<double>(i), 1);
     const std::size_t index = static_cast<std::size_t>(row * grid.rows) * grid.columns +
                               static_cast<std::size_t>(column * grid.columns);
-    seen[i] = look(scan, directions[index], index);
+    return look(scan, directions[index], index, with_paths);
   });
-  std::vector<PilotRay> result;
-  for (const auto& ray : seen)
-    if (ray) result.push_back(*ray);
-  return result;
 }
 
 }  // namespace scan::synth

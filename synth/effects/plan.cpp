@@ -7,16 +7,17 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/nearest_word.h"
+#include "synth/effects/thin.h"
 #include "synth/effects/weight.h"
 
 namespace scan::synth {
 namespace {
 
-// Of the scanner's own sigma. Five effects left out together stay below a tenth of it.
-constexpr double negligible = 0.02;
-
 constexpr std::size_t most_views = 8;  // that the pilot looks from
-constexpr int pilot_rays = 4096;       // over all of them
+// Rays that it looks along, over all of them: a share of the scans' rays, so that quick scans are
+// planned quickly, within limits.
+constexpr double pilot_share = 0.02;
+constexpr double least_pilot_rays = 1024, most_pilot_rays = 4096;
 
 Effect known_effect(const std::string& word) {
   if (const auto effect = effect_named(word)) return *effect;
@@ -40,11 +41,14 @@ std::vector<PilotRay> pilot_all(const Scanner& scanner, const Scene& scene,
   if (views.empty()) return rays;
   const RayCaster caster(scene);
   const std::size_t count = std::min(most_views, views.size());
+  const double all_rays = ray_count(scanner) * static_cast<double>(views.size());
+  const int rays_of_view =
+      static_cast<int>(std::clamp(pilot_share * all_rays, least_pilot_rays, most_pilot_rays) /
+                       static_cast<double>(count));
   for (std::size_t i = 0; i < count; ++i) {
     const Pose& view = views[i * views.size() / count];
-    auto seen = std::visit(
-        [&](const auto& s) { return pilot(s, caster, view, pilot_rays / static_cast<int>(count)); },
-        scanner);
+    auto seen =
+        std::visit([&](const auto& s) { return pilot(s, caster, view, rays_of_view); }, scanner);
     rays.insert(rays.end(), std::make_move_iterator(seen.begin()),
                 std::make_move_iterator(seen.end()));
   }
@@ -81,7 +85,7 @@ bool is_on(const EffectChoice& choice, const EffectSet& named, Effect effect,
            const Weighed& weighed) {
   switch (choice.kind) {
     case EffectChoice::Kind::automatic:
-      return weighed.weight && weighed.weight->bound_sigma >= negligible;
+      return weighed.weight && weighed.weight->bound_sigma >= negligible_sigma;
     case EffectChoice::Kind::all:
       return true;
     case EffectChoice::Kind::none:

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much an effect can move a range: what the planner asks each scanner.
 //
-// For each scanner two functions, in synth/effects/weigh_<scanner>.cpp:
+// For each scanner two functions, in synth/effects/pilot_<scanner>.cpp and weigh_<scanner>.cpp:
 //   pilot(): a few thousand of the scanner's rays, spread over a view, with what they meet;
 //   weigh(): the bound of one effect, from closed forms of the scanner's physics at those rays.
 #pragma once
@@ -17,6 +17,10 @@
 #include "synth/scanner.h"
 
 namespace scan::synth {
+
+// An effect is included if it can move some pilot ray by this share of the scanner's own sigma:
+// five effects left out together stay below a tenth of it.
+inline constexpr double negligible_sigma = 0.02;
 
 struct PilotRay {
   double range_m = 0;

@@ -11,6 +11,7 @@
 #include "synth/scanners/laser_line_blooming.h"
 #include "synth/scanners/laser_line_exposure.h"
 #include "synth/scanners/limits.h"
+#include "synth/scanners/row_reader.h"
 
 namespace scan::synth {
 namespace {
@@ -80,12 +81,11 @@ void spill(const LaserSweep& sweep, std::span<double> row_e, RandomStream& rando
   bloom(row_e, sweep.scanner.sensor.full_well_e, sweep.scanner.blooming_share);
 }
 
-Image<std::uint16_t> render_step(const LaserExposure& exposure, PathTally& tally) {
+Image<std::uint16_t> render_step(const LaserExposure& exposure, const RowReader& reader,
+                                 PathTally& tally) {
   const LaserSweep& sweep = exposure.sweep();
   const Camera& camera = sweep.scanner.camera;
   const bool blooms = sweep.scanner.blooming_share > 0;
-  DetectorEffects reading = sweep.detector;
-  reading.shot_noise = reading.shot_noise && !blooms;
   StepLight light = direct_light(exposure);
   if (sweep.paths) light.brightened = exposure.brightened(light.lit, light.laser_e, tally);
   Image<std::uint16_t> image(camera.width_px, camera.height_px);
@@ -94,12 +94,13 @@ Image<std::uint16_t> render_step(const LaserExposure& exposure, PathTally& tally
       static_cast<std::size_t>(camera.height_px),
       [&](std::size_t r) {
         const int row = static_cast<int>(r);
-        RandomStream random(sweep.address.seed, sweep.address.scan,
-                            static_cast<std::uint64_t>(exposure.step()) * camera.height_px + r);
+        const std::uint64_t ray =
+            static_cast<std::uint64_t>(exposure.step()) * camera.height_px + r;
+        RandomStream random(sweep.address.seed, sweep.address.scan, ray);
         std::vector<double> row_e = row_light(exposure, light, row, tallies[r]);
         if (blooms) spill(sweep, row_e, random);
-        for (int column = 0; column < camera.width_px; ++column)
-          image(column, row) = read_pixel(sweep.scanner.sensor, reading, row_e[column], random);
+        RowReader::Memory memory;
+        reader.read(sweep.address, ray, row_e, std::span(&image(0, row), row_e.size()), memory);
       },
       16);
   for (const PathTally& each : tallies) tally += each;
@@ -175,6 +176,9 @@ Rendering render(const LaserLine& device, const RayCaster& caster, const Pose& w
                          .address = address,
                          .detector = detector_effects(effects),
                          .paths = paths ? &*paths : nullptr};
+  DetectorEffects reading = sweep.detector;
+  if (scanner.blooming_share > 0) reading.shot_noise = false;  // it comes before the charge spills
+  const RowReader reader(scanner.sensor, reading);
   StripeImages frames;
   frames.calibration = calibration_of(device, sweep.detector);
   frames.scanner_from_camera = scanner_from_camera(scanner);
@@ -186,7 +190,7 @@ Rendering render(const LaserLine& device, const RayCaster& caster, const Pose& w
         const LaserView view{scanner, sweep.sheet, caster,
                              world_from_scanner * frames.scanner_from_camera[step]};
         const LaserExposure exposure(sweep, view, static_cast<int>(step));
-        frames.images[step] = render_step(exposure, tallies[step]);
+        frames.images[step] = render_step(exposure, reader, tallies[step]);
       },
       1);
   PathTally tally;

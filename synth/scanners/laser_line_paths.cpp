@@ -56,6 +56,15 @@ Brightest SheetEmitter::brightest(const Eigen::Vector3d& origin,
                               : far_m};
 }
 
+// No farther from the plane than the beam and its bow.
+bool SheetEmitter::reaches(const Eigen::Vector3d& centre, double radius_m) const {
+  const LaserSheet& sheet = view_.sheet;
+  const Eigen::Vector3d away = view_.world_from_camera.linear().transpose() * (centre - position_);
+  const double far_m = away.norm() + radius_m;
+  const double half_m = std::max(sheet.radius_m(far_m), sheet.radius_m(0)) * sheet.reach_radii;
+  return std::abs(sheet.normal.dot(away)) <= radius_m + half_m + std::abs(sheet.bow_slope) * far_m;
+}
+
 void PathSums::device_light(double electrons, double path_m, int scatterings) {
   // the straight way is the shortest but for rounding
   if (scatterings <= 1 && path_m <= direct_way_m * (1 + 1e-9)) {

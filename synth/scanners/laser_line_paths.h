@@ -24,6 +24,7 @@ class SheetEmitter {
   double flux() const { return flux_; }
   // Where a ray through fog crosses the sheet, and how far from there it is half as bright.
   Brightest brightest(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+  bool reaches(const Eigen::Vector3d& centre, double radius_m) const;
 
  private:
   const LaserView& view_;

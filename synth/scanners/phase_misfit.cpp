@@ -102,6 +102,10 @@ std::vector<Misfit> misfits_of(const PatchReadings& readings, std::span<const Pa
   return misfits;
 }
 
+Eigen::ArrayXd error_e2(const Spread& streams, const Misfit& misfit, double unit_e2) {
+  return streams.variance + unit_e2 * misfit.missed();
+}
+
 double mean_unit_e2(const PatchReadings& readings, std::span<const PatchPixel> pixels) {
   double sum_e2 = 0;
   for (const PatchPixel& pixel : pixels)

@@ -44,13 +44,19 @@ struct Misfit {
   Eigen::ArrayXd last_chance;  // its own variance
   double structure = 0;        // of residuals that no degree follows
 
-  double square() const { return structure + (chance + last.max(0)).maxCoeff(); }
+  // What the fit misses, as far as it is known.
+  Eigen::ArrayXd missed() const { return structure + last.max(0); }
+  double square() const { return (chance + missed()).maxCoeff(); }
   // Whether more paths make it hardly better: what is missed is beyond chance and half of the goal.
   bool is_stiff(double goal) const;
 };
 // Of fits up to degree 1, 2, ...
 std::vector<Misfit> misfits_of(const PatchReadings& readings, std::span<const PatchPixel> pixels,
                                const PatchFit& fit);
+
+// Square of a pixel's readings' error: what chance makes of the streams' mean, and what the fit
+// misses.
+Eigen::ArrayXd error_e2(const Spread& streams, const Misfit& misfit, double unit_e2);
 
 // Mean over the pixels by their direct light, which is most of it.
 double mean_unit_e2(const PatchReadings& readings, std::span<const PatchPixel> pixels);

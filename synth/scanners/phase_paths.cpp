@@ -211,7 +211,7 @@ void estimate_taps(const PathView& view, std::span<const Tone> tones, const Pixe
 
 IndirectLight indirect_light(const PathView& view, const PixelPlace& pixel, std::uint64_t ray,
                              int paths) {
-  constexpr int streams = 4;
+  const int streams = std::min(4, paths);
   const PhaseCamera& s = view.scanner;
   const auto seen = lens_ray(s, Eigen::Vector2d(pixel.column, pixel.row), {0, 0});
   if (!seen) return {};
@@ -237,7 +237,7 @@ IndirectLight indirect_light(const PathView& view, const PixelPlace& pixel, std:
   const double scatter = std::max(0.0, squares - all.indirect_e * all.indirect_e / streams);
   return {.direct_e = scale * all.direct_e,
           .indirect_e = scale * all.indirect_e,
-          .indirect_error_e = scale * std::sqrt(scatter * streams / (streams - 1)),
+          .indirect_error_e = scale * std::sqrt(scatter * streams / std::max(streams - 1, 1)),
           .extra_m = all.indirect_e > 0 ? all.extra_me / all.indirect_e : 0,
           .other_e = scale * s.electrons_per_w_m2 * all.other_w_m2};
 }

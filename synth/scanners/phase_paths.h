@@ -62,7 +62,7 @@ void estimate_taps(const PathView& view, std::span<const Tone> tones, const Pixe
                    EstimateMemory& memory, Estimate& result);
 
 // Light at a pixel's centre, electrons. Direct light is the device's, straight from it to the first
-// surface and back; indirect light is the rest of it, by a few paths.
+// surface and back; indirect light is the rest of it, by a few paths (one where there is none).
 struct IndirectLight {
   double direct_e = 0;
   double indirect_e = 0;

@@ -117,7 +117,6 @@ PatchFit SharedPaths::fit(const Part& part, const PatchBasis& basis) const {
 // Adds what the first functions fit to the light of the part's pixels.
 void SharedPaths::finish(const Part& part, const PatchFit& fit, Eigen::Index functions,
                          const Misfit& misfit) {
-  const Eigen::ArrayXd missed = misfit.last.max(0) + misfit.structure;
   for (std::size_t i = part.begin; i < part.end; ++i) {
     const PatchPixel& pixel = patch_[i];
     const LightSum light = readings_.direct(pixel);
@@ -134,7 +133,7 @@ void SharedPaths::finish(const Part& part, const PatchFit& fit, Eigen::Index fun
     for (std::size_t t = 0; t < tones_.size(); ++t)
       light.amplitude_e[t] += readings_.phasor_of(pixel, mean, t);
     const Eigen::ArrayXd square =
-        spread_of(reading).variance + readings_.unit_e2(light.constant_e) * missed;
+        error_e2(spread_of(reading), misfit, readings_.unit_e2(light.constant_e));
     Estimate taps{.samples = patch_streams * part.per_stream};
     for (Eigen::Index j = 0; j < readings_.tap_count(); ++j) {
       taps.mean.push_back(light.constant_e);

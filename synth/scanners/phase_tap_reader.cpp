@@ -17,7 +17,8 @@ constexpr std::uint32_t alone_block = 1u << 31, blocks_alone = 256;
 
 struct TapReader::Memory {
   std::vector<BlockAddress> blocks;
-  std::vector<double> expected_e, normals;
+  std::vector<double> expected_e;
+  std::vector<float> normals;
   std::vector<std::uint16_t> readings;
 };
 

@@ -16,6 +16,7 @@ namespace {
 constexpr double cells_per_sigma = 16;
 constexpr double most_entries = 32768;  // 256 KiB
 constexpr std::size_t terms = PulseTable::terms;
+constexpr double farthest = 1e15;  // samples from the window's start; no window reaches so far
 
 using Series = std::array<double, terms>;
 
@@ -68,12 +69,12 @@ PulseTable::PulseTable(double sigma) {
   const double reach = std::ceil(reach_sigmas * sigma + 0.5);
   const double cells = std::ceil(cells_per_sigma / sigma);
   if (!((2 * reach + 1) * cells * terms <= most_entries)) return;
-  before_ = reach;
+  before_ = static_cast<std::ptrdiff_t>(reach);
   width_ = static_cast<std::size_t>(2 * reach + 1);
   cells_ = static_cast<std::size_t>(cells);
   series_.resize(cells_ * terms * width_);
   for (std::size_t cell = 0; cell < cells_; ++cell) {
-    const double middle = before_ + (static_cast<double>(cell) + 0.5) / cells;
+    const double middle = reach + (static_cast<double>(cell) + 0.5) / cells;
     Series before = before_edge((-0.5 - middle) / sigma, sigma);
     for (std::size_t i = 0; i < width_; ++i) {
       const Series after = before_edge((static_cast<double>(i) + 0.5 - middle) / sigma, sigma);
@@ -84,21 +85,31 @@ PulseTable::PulseTable(double sigma) {
   }
 }
 
-SampleRange PulseTable::add(double middle, double total, std::span<double> samples) const {
-  const double whole = std::floor(middle), place = middle - whole;
-  const auto end = static_cast<double>(samples.size());
-  const double start = whole - before_;
-  const double first = std::clamp(start, 0.0, end);
-  const double behind = std::clamp(start + static_cast<double>(width_), first, end);
-  if (!(first < behind)) return {};
-  const std::size_t cell =
-      std::min(cells_ - 1, static_cast<std::size_t>(place * static_cast<double>(cells_)));
-  const double x = place - (static_cast<double>(cell) + 0.5) / static_cast<double>(cells_);
-  const SampleRange touched{static_cast<std::size_t>(first), static_cast<std::size_t>(behind)};
-  const double* series = &series_[cell * terms * width_] + static_cast<std::size_t>(first - start);
-  versions.fastest()(series, width_, x, total, samples.data() + touched.first,
-                     touched.behind - touched.first);
-  return touched;
+PulseTable::Place PulseTable::place(double middle) const {
+  middle = std::clamp(middle, -farthest, farthest);
+  auto whole = static_cast<std::ptrdiff_t>(middle);
+  if (static_cast<double>(whole) > middle) --whole;
+  const double place = middle - static_cast<double>(whole);
+  const auto cells = static_cast<std::ptrdiff_t>(cells_);
+  const auto cell =
+      std::min(cells - 1, static_cast<std::ptrdiff_t>(place * static_cast<double>(cells)));
+  return {.start = whole - before_,
+          .series = &series_[static_cast<std::size_t>(cell) * terms * width_],
+          .x = place - (static_cast<double>(cell) + 0.5) / static_cast<double>(cells)};
+}
+
+SampleRange PulseTable::touched(const Place& place, std::size_t samples) const {
+  const auto end = static_cast<std::ptrdiff_t>(samples);
+  const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(place.start, 0, end);
+  const auto behind = std::clamp(place.start + static_cast<std::ptrdiff_t>(width_), first, end);
+  return {static_cast<std::size_t>(first), static_cast<std::size_t>(behind)};
+}
+
+void PulseTable::add(const Place& place, double total, const SampleRange& range,
+                     double* samples) const {
+  const auto skipped = static_cast<std::ptrdiff_t>(range.first) - place.start;
+  versions.fastest()(place.series + skipped, width_, place.x, total, samples,
+                     range.behind - range.first);
 }
 
 std::span<PulseKernel* const> pulse_kernels() {

@@ -24,9 +24,19 @@ class PulseTable {
   explicit PulseTable(double sigma);
 
   bool exists() const { return !series_.empty(); }
-  // Adds a pulse with that integral whose middle is at `middle` (sample i is the interval about i);
-  // returns the samples touched, all within 7.5 sigma: 6e-14 of the pulse lies beyond.
-  SampleRange add(double middle, double total, std::span<double> samples) const;
+  // Of a pulse whose middle is at `middle`; sample i is the interval about i.
+  struct Place {
+    std::ptrdiff_t start = 0;  // the first sample that it touches, may lie before the window
+    const double* series = nullptr;
+    double x = 0;
+  };
+  Place place(double middle) const;
+  // The samples that it touches of a window of so many: all within 7.5 sigma; 6e-14 of the pulse
+  // lies beyond.
+  SampleRange touched(const Place& place, std::size_t samples) const;
+  // Adds a pulse with that integral to those samples, which the pulse touches; `samples` points to
+  // the first of them.
+  void add(const Place& place, double total, const SampleRange& range, double* samples) const;
 
   static constexpr double reach_sigmas = 7.5;
   static constexpr std::size_t terms = 6;
@@ -34,7 +44,7 @@ class PulseTable {
  private:
   std::size_t cells_ = 0;
   std::size_t width_ = 0;       // samples that a pulse touches
-  double before_ = 0;           // of them before the one that holds the middle
+  std::ptrdiff_t before_ = 0;   // of them before the one that holds the middle
   std::vector<double> series_;  // [cell][term][sample]
 };
 

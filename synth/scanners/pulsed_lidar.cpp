@@ -3,6 +3,7 @@
 #include "synth/scanners/pulsed_lidar.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -103,34 +104,43 @@ Waveforms empty_frames(const PulsedLidar& s, const SampleAxis& axis,
   return frames;
 }
 
+// Keeps of whole windows, one after the other, what the gate lets through.
+void keep_gated(const PulsedLidar& s, std::span<const Pulse> pulses,
+                std::span<const std::uint16_t> windows, Waveforms& frames) {
+  const double least_dn = gate_dn(s, frames.calibration.sensor);
+  const std::size_t kept = frames.samples_per_ray, whole = windows.size() / pulses.size();
+  for (std::size_t i = 0; i < pulses.size(); ++i) {
+    const auto window = windows.subspan(i * whole, whole);
+    const std::uint32_t start = gate_start(window, s.gate.samples, least_dn);
+    frames.first_sample[pulses[i].ray] = start;
+    std::copy_n(&window[start], kept, &frames.samples[pulses[i].ray * kept]);
+  }
+}
+
 // Records pulses [begin, end) in the order that they are best traced in.
 LidarPaths::Quality record(const LidarScan& scan, const Pose& world_from_scanner, std::size_t begin,
                            std::size_t end, Waveforms& frames) {
   const PulsedLidar& s = scan.beam.scanner;
-  const bool moving = is_moving(s);
-  const double least_dn = gate_dn(s, frames.calibration.sensor);
-  const std::size_t kept = frames.samples_per_ray;
+  const bool moving = is_moving(s), gated = s.gate.samples > 0;
   const auto columns = static_cast<int>(frames.grid.columns);
   TileWalk walk(begin, columns, static_cast<int>(frames.grid.rows));
   LidarRecorder recorder(scan);
   std::vector<Pulse> pulses;
   std::vector<Pose> poses(moving ? rays_at_once : 0);
+  std::vector<std::uint16_t> whole(gated ? rays_at_once * recorder.samples() : 0);
+  std::array<std::uint16_t*, rays_at_once> windows;
   for (std::size_t first = begin; first < end; first += rays_at_once) {
+    const std::size_t count = std::min(rays_at_once, end - first);
     pulses.clear();
-    for (std::size_t k = 0; k < std::min(rays_at_once, end - first); ++k, walk.next()) {
+    for (std::size_t k = 0; k < count; ++k, walk.next()) {
       const std::size_t ray = index_of(walk.place(), columns);
       if (moving) poses[k] = world_from_scanner * scan_from_scanner(s, ray);
       pulses.push_back({ray, moving ? &poses[k] : &world_from_scanner, frames.directions[ray]});
+      windows[k] =
+          gated ? &whole[k * recorder.samples()] : &frames.samples[ray * recorder.samples()];
     }
-    const auto windows = recorder.read(pulses);
-    for (std::size_t i = 0; i < pulses.size(); ++i) {
-      const auto window = windows.subspan(i * recorder.samples(), recorder.samples());
-      std::size_t start = 0;
-      if (!frames.first_sample.empty())
-        start = frames.first_sample[pulses[i].ray] = gate_start(window, s.gate.samples, least_dn);
-      std::copy_n(window.begin() + static_cast<std::ptrdiff_t>(start), kept,
-                  frames.samples.begin() + static_cast<std::ptrdiff_t>(pulses[i].ray * kept));
-    }
+    recorder.read(pulses, windows);
+    if (gated) keep_gated(s, pulses, std::span(whole).first(count * recorder.samples()), frames);
   }
   return recorder.quality();
 }

@@ -90,6 +90,16 @@ double straight_way_m(const RayCaster& caster, const Ray& view) {
   return hit ? 2 * hit->distance_m * (1 + same_length) : std::numeric_limits<double>::infinity();
 }
 
+// exp(-t^2 / slope^2) is below 1e-21 beyond 7 slopes; the ball meets the cone if its centre is no
+// farther off than its radius over the cone's cosine.
+bool BeamLight::reaches(const Eigen::Vector3d& centre, double radius_m) const {
+  const Eigen::Vector3d away = centre - origin;
+  const double ahead_m = away.dot(axis), aside_m = (away - ahead_m * axis).norm();
+  const double edge = 7 * slope;
+  return ahead_m >= -radius_m &&
+         aside_m <= edge * std::max(ahead_m, 0.0) + radius_m * std::hypot(1, edge);
+}
+
 // Where the ray comes nearest to the beam's axis; a ray along the beam: to the origin.
 Brightest BeamLight::brightest(const Eigen::Vector3d& from, const Eigen::Vector3d& along) const {
   const Eigen::Vector3d off = from - origin;

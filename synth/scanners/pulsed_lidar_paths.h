@@ -30,6 +30,7 @@ struct BeamLight {
   EmittedRay sample(const Eigen::Vector2d& u) const;
   double flux() const;
   Brightest brightest(const Eigen::Vector3d& from, const Eigen::Vector3d& along) const;
+  bool reaches(const Eigen::Vector3d& centre, double radius_m) const;
 };
 
 // The beam along `direction` (unit, scanner frame), as wide as where its centre first ends; 10 urad

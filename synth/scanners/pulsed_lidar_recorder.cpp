@@ -19,11 +19,26 @@ constexpr std::size_t per_block = 4;  // numbers of a stream
 constexpr std::uint32_t dark_block = 1u << 29, dark_more_block = 1u << 30, alone_block = 1u << 31;
 constexpr std::uint32_t blocks_alone = 256;
 
+bool has_table(const LidarScan& scan, const Echo& echo) {
+  return scan.pulse.exists() && echo.sigma_s == scan.beam.scanner.pulse_sigma_s;
+}
+
+double middle_of(const LidarScan& scan, const Echo& echo) {
+  return (echo.time_s - scan.axis.start_s) / scan.axis.interval_s;
+}
+
 SampleRange add_pulse(const LidarScan& scan, const Echo& echo, std::span<double> samples) {
-  if (!scan.pulse.exists() || echo.sigma_s != scan.beam.scanner.pulse_sigma_s)
-    return add_echo(scan.axis, echo, samples);
-  return scan.pulse.add((echo.time_s - scan.axis.start_s) / scan.axis.interval_s, echo.electrons,
-                        samples);
+  if (!has_table(scan, echo)) return add_echo(scan.axis, echo, samples);
+  const auto place = scan.pulse.place(middle_of(scan, echo));
+  const SampleRange range = scan.pulse.touched(place, samples.size());
+  scan.pulse.add(place, echo.electrons, range, samples.data() + range.first);
+  return range;
+}
+
+SampleRange joined(const SampleRange& a, const SampleRange& b) {
+  if (b.first == b.behind) return a;
+  if (a.first == a.behind) return b;
+  return {std::min(a.first, b.first), std::max(a.behind, b.behind)};
 }
 
 }  // namespace
@@ -50,89 +65,107 @@ LidarScan prepare_scan(const LidarBeam& beam, const RenderAddress& address,
 }
 
 LidarRecorder::LidarRecorder(const LidarScan& scan)
-    : scan_(scan), signal_e_(static_cast<std::size_t>(scan.axis.samples), 0.0) {}
+    : scan_(scan), samples_(static_cast<std::size_t>(scan.axis.samples)) {}
 
-std::span<const std::uint16_t> LidarRecorder::read(std::span<const Pulse> pulses) {
-  expected_e_.clear();
+void LidarRecorder::read(std::span<const Pulse> pulses, std::span<std::uint16_t* const> windows) {
+  used_ = 0;
   lit_.clear();
-  starts_.clear();
-  blocks_.clear();
   const bool straight = !scan_.paths || scan_.paths->straight_is_known();
+  const bool alone = !scan_.fog && !scan_.paths && scan_.beam.scanner.range_walk.per_decade_s == 0;
   if (straight) scan_.beam.echoes(pulses, echoes_);
   for (std::size_t i = 0, begin = 0; i < pulses.size(); ++i) {
     const std::size_t end = straight ? echoes_.ends[i] : 0;
     const auto echoes = std::span(echoes_.echoes).subspan(begin, end - begin);
-    collect(pulses[i].ray, light(pulses[i], echoes));
+    if (alone && echoes.empty())
+      open(pulses[i].ray, {});
+    else if (alone && echoes.size() == 1 && has_table(scan_, echoes[0]))
+      add_lone(pulses[i], echoes[0]);
+    else
+      add_light(pulses[i], echoes);
     begin = end;
   }
-  readings_.resize(pulses.size() * samples());
   detect();
-  read_dark(pulses);
-  for (std::size_t i = 0; i < pulses.size(); ++i)
-    std::copy_n(detected_.begin() + static_cast<std::ptrdiff_t>(starts_[i]),
-                lit_[i].behind - lit_[i].first,
-                readings_.begin() + static_cast<std::ptrdiff_t>(i * samples() + lit_[i].first));
-  return readings_;
+  for (std::size_t i = 0; i < pulses.size(); ++i) {
+    const auto& [range, start] = lit_[i];
+    std::copy_n(detected_.data() + start, range.behind - range.first, windows[i] + range.first);
+  }
+  read_dark(pulses, windows);
 }
 
-void LidarRecorder::collect(std::size_t ray, const SampleRange& lit) {
-  const std::size_t count = lit.behind - lit.first, start = expected_e_.size();
-  const std::size_t blocks = (count + per_block - 1) / per_block;
-  lit_.push_back(lit);
-  starts_.push_back(start);
-  for (std::size_t b = 0; b < blocks; ++b) blocks_.push_back({ray, b});
-  const double ambient_e = scan_.beam.scanner.ambient_electrons;
-  expected_e_.resize(start + per_block * blocks, ambient_e);
+double* LidarRecorder::open(std::size_t ray, const SampleRange& range) {
+  const std::size_t start = used_;
+  const std::size_t blocks = (range.behind - range.first + per_block - 1) / per_block;
+  used_ += per_block * blocks;
+  if (expected_e_.size() < used_) {
+    expected_e_.resize(2 * used_);
+    blocks_.resize(expected_e_.size() / per_block);
+    detected_.resize(expected_e_.size());
+  }
+  lit_.push_back({range, start});
+  if (scan_.detector.needs_normals())  // else all are read in closed form
+    for (std::size_t b = 0; b < blocks; ++b) blocks_[start / per_block + b] = {ray, b};
   double* const expected_e = expected_e_.data() + start;
-  double* const signal_e = signal_e_.data() + lit.first;
-  for (std::size_t i = 0; i < count; ++i) expected_e[i] = ambient_e + signal_e[i];
-  std::fill_n(signal_e, count, 0.0);
+  std::fill_n(expected_e, per_block * blocks, scan_.beam.scanner.ambient_electrons);
+  return expected_e;
 }
 
 void LidarRecorder::detect() {
   const PulsedLidar& s = scan_.beam.scanner;
-  detected_.resize(expected_e_.size());
+  const auto expected_e = std::span(expected_e_).first(used_);
   if (scan_.detector.needs_normals()) {
-    normals_.resize(expected_e_.size());
-    draw_normals(scan_.address.seed, scan_.address.scan, blocks_, normals_);
+    if (normals_.size() < used_) normals_.resize(expected_e_.size());
+    draw_normals(scan_.address.seed, scan_.address.scan,
+                 std::span(blocks_).first(used_ / per_block), normals_);
   }
-  scan_.detector.read(expected_e_, normals_, detected_, [&](std::size_t i) {
+  const auto read_one = [&](std::size_t i) {
     const auto& [ray, block] = blocks_[i / per_block];
     const auto sample = static_cast<std::uint32_t>(per_block * block + i % per_block);
     RandomStream random(scan_.address.seed, scan_.address.scan, ray,
                         alone_block + blocks_alone * sample);
-    const bool lit = expected_e_[i] > s.ambient_electrons + least_signal_e;
-    return lit ? read_pixel(s.sensor, scan_.reading, expected_e_[i], random)
+    const bool lit = expected_e[i] > s.ambient_electrons + least_signal_e;
+    return lit ? read_pixel(s.sensor, scan_.reading, expected_e[i], random)
                : scan_.dark.draw(random);
-  });
+  };
+  scan_.detector.read(expected_e, normals_, std::span(detected_).first(used_), read_one);
 }
 
-void LidarRecorder::read_dark(std::span<const Pulse> pulses) {
+void LidarRecorder::read_dark(std::span<const Pulse> pulses,
+                              std::span<std::uint16_t* const> windows) {
   const auto words_of = [&](const SampleRange& lit) {
-    return scan_.dark.words_for(lit.first) + scan_.dark.words_for(samples() - lit.behind);
+    return scan_.dark.words_for(lit.first) + scan_.dark.words_for(samples_ - lit.behind);
   };
-  blocks_.clear();
-  for (std::size_t i = 0; i < pulses.size(); ++i)
-    for (std::size_t b = 0; b < (words_of(lit_[i]) + per_block - 1) / per_block; ++b)
-      blocks_.push_back({pulses[i].ray, dark_block + b});
-  words_.resize(per_block * blocks_.size());
-  draw_words(scan_.address.seed, scan_.address.scan, blocks_, words_);
+  dark_blocks_.clear();
+  for (std::size_t i = 0; i < pulses.size(); ++i) {
+    const std::size_t count = (words_of(lit_[i].range) + per_block - 1) / per_block;
+    for (std::size_t b = 0; b < count; ++b) dark_blocks_.push_back({pulses[i].ray, dark_block + b});
+  }
+  words_.resize(per_block * dark_blocks_.size());
+  draw_words(scan_.address.seed, scan_.address.scan, dark_blocks_, words_);
   std::size_t word = 0;
   for (std::size_t i = 0; i < pulses.size(); ++i) {
-    const auto window = std::span(readings_).subspan(i * samples(), samples());
-    const std::size_t before = scan_.dark.words_for(lit_[i].first), all = words_of(lit_[i]);
+    const SampleRange& lit = lit_[i].range;
+    if (lit.behind - lit.first == samples_) continue;
+    const auto window = std::span(windows[i], samples_);
+    const std::size_t before = scan_.dark.words_for(lit.first), all = words_of(lit);
     const auto words = std::span<const std::uint32_t>(words_).subspan(word, all);
     RandomStream more(scan_.address.seed, scan_.address.scan, pulses[i].ray, dark_more_block);
-    scan_.dark.draw(words.first(before), more, window.first(lit_[i].first));
-    scan_.dark.draw(words.subspan(before), more, window.subspan(lit_[i].behind));
+    scan_.dark.draw(words.first(before), more, window.first(lit.first));
+    scan_.dark.draw(words.subspan(before), more, window.subspan(lit.behind));
     word += (all + per_block - 1) / per_block * per_block;
   }
 }
 
-SampleRange LidarRecorder::light(const Pulse& pulse, std::span<Echo> echoes) {
+void LidarRecorder::add_lone(const Pulse& pulse, const Echo& echo) {
+  const auto place = scan_.pulse.place(middle_of(scan_, echo));
+  const SampleRange lit = scan_.pulse.touched(place, samples_);
+  scan_.pulse.add(place, echo.electrons, lit, open(pulse.ray, lit));
+}
+
+void LidarRecorder::add_light(const Pulse& pulse, std::span<Echo> echoes) {
   const PulsedLidar& s = scan_.beam.scanner;
   const LidarPaths::Beam beam{*pulse.world_from_scanner, pulse.direction, scan_.address, pulse.ray};
-  SampleRange lit{signal_e_.size(), 0};
+  signal_e_.assign(samples_, 0.0);
+  SampleRange lit;
   if (scan_.fog) lit = veil(pulse, echoes);
   walk_.clear();
   if (s.range_walk.per_decade_s != 0) {
@@ -142,15 +175,14 @@ SampleRange LidarRecorder::light(const Pulse& pulse, std::span<Echo> echoes) {
   }
   for (Echo& echo : echoes) {
     echo.time_s += delay_s(walk_, echo.time_s);
-    const SampleRange touched = add_pulse(scan_, echo, signal_e_);
-    if (touched.first == touched.behind) continue;
-    lit = {std::min(lit.first, touched.first), std::max(lit.behind, touched.behind)};
+    lit = joined(lit, add_pulse(scan_, echo, signal_e_));
   }
   if (scan_.paths) {
     quality_ += scan_.paths->add(beam, walk_, signal_e_, memory_);
-    lit = {0, signal_e_.size()};
+    lit = {0, samples_};
   }
-  return {std::min(lit.first, lit.behind), lit.behind};
+  double* const expected_e = open(pulse.ray, lit);
+  for (std::size_t i = lit.first; i < lit.behind; ++i) expected_e[i - lit.first] += signal_e_[i];
 }
 
 SampleRange LidarRecorder::veil(const Pulse& pulse, std::span<Echo> echoes) {

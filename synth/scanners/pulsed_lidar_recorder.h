@@ -35,33 +35,42 @@ class LidarRecorder {
  public:
   explicit LidarRecorder(const LidarScan& scan);
 
-  // All samples of their windows, DN, pulse by pulse; valid until the next call.
-  std::span<const std::uint16_t> read(std::span<const Pulse> pulses);
+  // All samples, DN, of pulse i into windows[i].
+  void read(std::span<const Pulse> pulses, std::span<std::uint16_t* const> windows);
 
-  std::size_t samples() const { return signal_e_.size(); }         // of the window
+  std::size_t samples() const { return samples_; }                 // of a window
   const LidarPaths::Quality& quality() const { return quality_; }  // over all rays so far
 
  private:
-  // Fills signal_e_ and returns the range of samples with light.
-  SampleRange light(const Pulse& pulse, std::span<Echo> echoes);
-  // Adds the fog's light and dims the echoes behind it.
+  // Samples of a ray with light, from `start` on in expected_e_.
+  struct Lit {
+    SampleRange range;
+    std::size_t start = 0;
+  };
+
+  // Of a ray with nothing but one echo from a point, and of any.
+  void add_lone(const Pulse& pulse, const Echo& echo);
+  void add_light(const Pulse& pulse, std::span<Echo> echoes);
+  // Adds the fog's light to signal_e_ and dims the echoes behind it.
   SampleRange veil(const Pulse& pulse, std::span<Echo> echoes);
-  // From signal_e_ to the end of expected_e_, in whole blocks of normal numbers.
-  void collect(std::size_t ray, const SampleRange& lit);
+  // The ambient light of a range in expected_e_, in whole blocks of normal numbers.
+  double* open(std::size_t ray, const SampleRange& range);
   void detect();
-  void read_dark(std::span<const Pulse> pulses);
+  void read_dark(std::span<const Pulse> pulses, std::span<std::uint16_t* const> windows);
 
   const LidarScan& scan_;
-  std::vector<double> signal_e_;  // of one ray, above the ambient light; all zero between rays
+  const std::size_t samples_;
   PulseEchoes echoes_;
-  // Of the lit samples of all rays, each ray's from a whole block on.
-  std::vector<SampleRange> lit_;  // by ray
-  std::vector<std::size_t> starts_;
-  std::vector<BlockAddress> blocks_;
-  std::vector<double> expected_e_, normals_;
+  std::vector<Lit> lit_;  // by ray
+  // Of the lit samples of all rays, each ray's from a whole block on; the first `used_` count.
+  std::size_t used_ = 0;
+  std::vector<BlockAddress> blocks_;  // one for four
+  std::vector<double> expected_e_;
+  std::vector<float> normals_;
   std::vector<std::uint16_t> detected_;
+  std::vector<BlockAddress> dark_blocks_;
   std::vector<std::uint32_t> words_;
-  std::vector<std::uint16_t> readings_;
+  std::vector<double> signal_e_;  // of one ray, above the ambient light
   std::vector<Echo> arrivals_;
   std::vector<DelayedPulse> walk_;
   LidarPaths::Memory memory_;

@@ -95,6 +95,26 @@ StereoPair with_effects(StereoPair s, const EffectSet& effects) {
   return s;
 }
 
+bool has_effect(const StereoPair& s, Effect effect) {
+  const bool moves = !s.velocity_m_s.isZero(0) || !s.angular_velocity_rad_s.isZero(0);
+  switch (effect) {
+    case Effect::footprint:
+      return s.sub_rays > 1;
+    case Effect::defocus:
+      return s.aperture_m > 0;
+    case Effect::vignetting:
+      return s.vignetting > 0;
+    case Effect::motion:
+      return moves && s.exposure_s > 0;
+    case Effect::rolling_shutter:
+      return moves && s.row_time_s > 0;
+    case Effect::miscalibration:
+      return !s.right_rotation_error_rad.isZero(0) || !s.right_position_error_m.isZero(0);
+    default:
+      return false;
+  }
+}
+
 ScannerRay calibrated_ray(const StereoCalibration& c, StereoSide side,
                           const Eigen::Vector2d& place) {
   const double x = side == StereoSide::left ? 0 : c.baseline_m;

@@ -11,6 +11,9 @@ namespace scan::synth {
 // The scanner as it is with those effects: what is off becomes ideal (no aperture, no motion, ...).
 StereoPair with_effects(StereoPair scanner, const EffectSet& effects);
 
+// Whether the device has anything of an effect of its own, noise aside.
+bool has_effect(const StereoPair& scanner, Effect effect);
+
 // Of sub-ray `i` of sub_rays^2, in the scanner frame at its own instant.
 struct StereoRay {
   ScannerRay ray;

@@ -32,8 +32,11 @@ bool meets_rectangle(const Sheet& sheet, const Eigen::Vector3d& from, const Eige
   return (across.cwiseAbs().array() <= sheet.half_m.array() + slack_m).all();
 }
 
-// The unfolded straight line meets every facet in turn, give or take what refraction may shift it.
-bool may_be_seen(const SmoothSurfaces& surfaces, const ImageStack& stack, Eigen::Vector3d from) {
+// The unfolded straight line meets every facet in turn, give or take what refraction may shift it,
+// and leaves the lamp where it shines.
+bool may_be_seen(const SmoothSurfaces& surfaces, const ImageStack& stack, const Lamp& lamp,
+                 Eigen::Vector3d from) {
+  const double length_m = (stack.images[stack.size] - from).norm();
   for (int k = stack.size; k-- > 0;) {
     const Sheet& sheet = surfaces.sheets[stack.sheets[k]];
     Eigen::Vector3d point;
@@ -42,7 +45,16 @@ bool may_be_seen(const SmoothSurfaces& surfaces, const ImageStack& stack, Eigen:
       return false;
     from = point;
   }
-  return true;
+  if (!lamp.emitter) return true;
+  if (surfaces.slack_m > 0) return lamp.emitter->reaches(surfaces.origin + from, surfaces.slack_m);
+  return lamp.emitter->irradiance((from - stack.images[0]).normalized(), length_m) > 0;
+}
+
+// Whether light of the lamp may come to the facet straight or through clear bodies.
+bool may_be_lit(const SmoothSurfaces& surfaces, const Sheet& sheet, const Lamp& lamp) {
+  if (!lamp.lights(sheet.body)) return false;
+  return !lamp.emitter || lamp.emitter->reaches(surfaces.origin + sheet.centre,
+                                                sheet.half_m.norm() + surfaces.slack_m);
 }
 
 Start start_at_image(const ImageStack& stack, const Eigen::Vector3d& from) {
@@ -53,12 +65,13 @@ Start start_at_image(const ImageStack& stack, const Eigen::Vector3d& from) {
   return start;
 }
 
-void add_images_behind(const SmoothSurfaces& surfaces, const Eigen::Vector3d& from, int most,
-                       ImageStack& stack, std::vector<Start>& starts) {
+void add_images_behind(const SmoothSurfaces& surfaces, const Eigen::Vector3d& from,
+                       const Lamp& lamp, int most, ImageStack& stack, std::vector<Start>& starts) {
   const Eigen::Vector3d target = stack.images[stack.size];
   for (const int s : surfaces.flat_reflectors) {
     if (stack.size > 0 && stack.sheets[stack.size - 1] == s) continue;
     const Sheet& sheet = surfaces.sheets[s];
+    if (stack.size == 0 && !may_be_lit(surfaces, sheet, lamp)) continue;
     const double height_m = sheet.normal.dot(target) - sheet.offset_m;
     if (height_m == 0) continue;
     const bool from_inside = height_m < 0;
@@ -66,9 +79,9 @@ void add_images_behind(const SmoothSurfaces& surfaces, const Eigen::Vector3d& fr
     stack.from_inside[stack.size] = from_inside;
     stack.images[++stack.size] = target - 2 * height_m * sheet.normal;
     const double from_height_m = sheet.normal.dot(from) - sheet.offset_m;
-    if (from_height_m * height_m > 0 && may_be_seen(surfaces, stack, from))
+    if (from_height_m * height_m > 0 && may_be_seen(surfaces, stack, lamp, from))
       starts.push_back(start_at_image(stack, from));
-    if (stack.size < most) add_images_behind(surfaces, from, most, stack, starts);
+    if (stack.size < most) add_images_behind(surfaces, from, lamp, most, stack, starts);
     --stack.size;
   }
 }
@@ -144,15 +157,15 @@ void add_aims(const SmoothSurfaces& surfaces, const Eigen::Vector3d& from,
   }
 }
 
-void add_images(const SmoothSurfaces& surfaces, const Eigen::Vector3d& from,
-                const Eigen::Vector3d& target, int most, std::vector<Start>& starts) {
+void add_images(const SmoothSurfaces& surfaces, const Eigen::Vector3d& from, const Lamp& lamp,
+                int most, std::vector<Start>& starts) {
   if (surfaces.flat_reflectors.empty()) return;
   const double facets = static_cast<double>(surfaces.flat_reflectors.size());
   int in_a_row = 1;
   while (in_a_row < most && std::pow(facets, in_a_row + 1) <= most_sequences) ++in_a_row;
   ImageStack stack;
-  stack.images[0] = target;
-  add_images_behind(surfaces, from, in_a_row, stack, starts);
+  stack.images[0] = lamp.position - surfaces.origin;
+  add_images_behind(surfaces, from, lamp, in_a_row, stack, starts);
 }
 
 }  // namespace scan::synth

@@ -27,13 +27,13 @@ std::optional<Chain> follow(const SmoothSurfaces& surfaces, const Start& start,
 void add_aims(const SmoothSurfaces& surfaces, const Eigen::Vector3d& from,
               const Eigen::Vector3d& target, const Chain& straight, std::vector<Start>& starts);
 
-// Starts at the images of the target in facets, and in facets seen in facets; `most` in a row.
-void add_images(const SmoothSurfaces& surfaces, const Eigen::Vector3d& from,
-                const Eigen::Vector3d& target, int most, std::vector<Start>& starts);
+// Starts at the images of the lamp in facets, and in facets seen in facets; `most` in a row.
+void add_images(const SmoothSurfaces& surfaces, const Eigen::Vector3d& from, const Lamp& lamp,
+                int most, std::vector<Start>& starts);
 
 // Starts at points of curved sheets, those nearest to Fermat's principle: reflection, passage, and
 // passage with one inner reflection.
 void add_curved_starts(const SmoothSurfaces& surfaces, const Eigen::Vector3d& from,
-                       const Eigen::Vector3d& target, int most, std::vector<Start>& starts);
+                       const Lamp& lamp, int most, std::vector<Start>& starts);
 
 }  // namespace scan::synth

@@ -141,23 +141,25 @@ bool is_known(const std::vector<Connection>& ways, const Connection& way) {
 // The search from one receiver to one light.
 class Search {
  public:
-  Search(const SmoothSurfaces& surfaces, int most, const Receiver& at, const Eigen::Vector3d& light,
+  Search(const SmoothSurfaces& surfaces, int most, const Receiver& at, const Lamp& lamp,
          std::vector<Connection>& ways)
       : surfaces_(surfaces),
         most_(most),
         at_(at),
-        light_(light),
+        lamp_(lamp),
         from_(at.point - surfaces.origin),
-        target_(light - surfaces.origin),
+        target_(lamp.position - surfaces.origin),
         ways_(ways) {}
 
   void run() {
-    Chain straight;
-    if (ways_.empty()) straight = over({.direction = (target_ - from_).normalized()});
     std::vector<Start> starts;
-    add_aims(surfaces_, from_, target_, straight, starts);
-    add_images(surfaces_, from_, target_, most_, starts);
-    add_curved_starts(surfaces_, from_, target_, most_, starts);
+    if (lamp_.lit == Lamp::all_bodies) {  // else it lights no clear body
+      Chain straight;
+      if (ways_.empty()) straight = over({.direction = (target_ - from_).normalized()});
+      add_aims(surfaces_, from_, target_, straight, starts);
+    }
+    add_images(surfaces_, from_, lamp_, most_, starts);
+    add_curved_starts(surfaces_, from_, lamp_, most_, starts);
     for (const Start& start : starts) over(start);
   }
 
@@ -179,18 +181,26 @@ class Search {
     return first;
   }
 
-  // A chain of facets has one solution.
-  bool was_tried(const Chain& chain) {
+  bool is_flat(const Chain& chain) const {
     for (int i = 0; i < chain.size; ++i)
       if (!surfaces_.sheets[chain.turns[i].sheet].is_flat) return false;
+    return true;
+  }
+
+  // A chain of facets has one solution.
+  bool was_tried(const Chain& chain) {
+    if (!is_flat(chain)) return false;
     if (std::find(tried_.begin(), tried_.end(), chain) != tried_.end()) return true;
     tried_.push_back(chain);
     return false;
   }
 
+  // False if the solution may lie beyond the end of a facet.
   bool take(const Chain& chain, const Shot& shot) {
-    if (!is_free(surfaces_, chain, shot, at_, light_)) return false;
     const Connection way = measured(surfaces_, chain, shot, from_, target_);
+    if (lamp_.emitter && !(lamp_.emitter->irradiance(way.emitted, way.length_m) > 0))
+      return !is_flat(chain);
+    if (!is_free(surfaces_, chain, shot, at_, lamp_.position)) return false;
     if (way.throughput >= least_throughput && std::isfinite(way.spread) && !is_known(ways_, way))
       ways_.push_back(way);
     return true;
@@ -199,18 +209,20 @@ class Search {
   const SmoothSurfaces& surfaces_;
   int most_;
   const Receiver& at_;
-  Eigen::Vector3d light_, from_, target_;
+  const Lamp& lamp_;
+  Eigen::Vector3d from_, target_;
   std::vector<Connection>& ways_;
   std::vector<Chain> tried_;
 };
 
-void find_ways(const SmoothSurfaces* surfaces, int most, const Receiver& at,
-               const Eigen::Vector3d& light, std::vector<Connection>& ways) {
+void find_ways(const SmoothSurfaces* surfaces, int most, const Receiver& at, const Lamp& lamp,
+               std::vector<Connection>& ways) {
   ways.clear();
-  if (!((light - at.point).squaredNorm() > 0)) return;
-  if (is_straight_free(at, light)) ways.push_back(straight(light - at.point));
-  if (!surfaces) return;
-  Search(*surfaces, most, at, light, ways).run();
+  const Eigen::Vector3d way = lamp.position - at.point;
+  if (!(way.squaredNorm() > 0)) return;
+  if (is_straight_free(at, lamp.position)) ways.push_back(straight(way));
+  if (!surfaces || lamp.lit == 0) return;
+  Search(*surfaces, most, at, lamp, ways).run();
   std::sort(ways.begin(), ways.end(), [](const Connection& a, const Connection& b) {
     return std::pair(a.bounces > 0, a.optical_m) < std::pair(b.bounces > 0, b.optical_m);
   });
@@ -224,14 +236,26 @@ Connector::Connector(const RayCaster& caster, int most_bounces)
     surfaces_ = std::make_shared<const SmoothSurfaces>(caster.scene());
 }
 
-void Connector::connect(const Hit& at, const Eigen::Vector3d& light,
-                        std::vector<Connection>& ways) const {
-  find_ways(surfaces_.get(), most_bounces_, {caster_, at.point, &at}, light, ways);
+void Connector::connect(const Hit& at, const Lamp& lamp, std::vector<Connection>& ways) const {
+  find_ways(surfaces_.get(), most_bounces_, {caster_, at.point, &at}, lamp, ways);
 }
 
-void Connector::connect(const Eigen::Vector3d& at, const Eigen::Vector3d& light,
+void Connector::connect(const Eigen::Vector3d& at, const Lamp& lamp,
                         std::vector<Connection>& ways) const {
-  find_ways(surfaces_.get(), most_bounces_, {caster_, at}, light, ways);
+  find_ways(surfaces_.get(), most_bounces_, {caster_, at}, lamp, ways);
+}
+
+std::uint64_t Connector::lit_bodies(const AnyEmitter& emitter) const {
+  if (!surfaces_) return 0;
+  std::uint64_t lit = 0;
+  for (std::size_t i = 0; i < surfaces_->bodies.size(); ++i) {
+    const SmoothBody& body = surfaces_->bodies[i];
+    const bool is_lit = !std::isfinite(body.size_m) ||
+                        emitter.reaches(surfaces_->origin + body.centre, body.size_m / 2);
+    if (is_lit && body.is_clear) return Lamp::all_bodies;
+    if (is_lit) lit |= Lamp::bit(static_cast<int>(i));
+  }
+  return lit;
 }
 
 }  // namespace scan::synth

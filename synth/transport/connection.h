@@ -4,11 +4,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "synth/ray_caster.h"
+#include "synth/transport/device.h"
 
 namespace scan::synth {
 
@@ -36,6 +39,21 @@ struct Connection {
   std::array<Eigen::Vector3d, most_bounces> bends;
 };
 
+// Where light comes from.
+struct Lamp {
+  Lamp(const Eigen::Vector3d& point) : position(point) {}
+
+  Eigen::Vector3d position;
+  const AnyEmitter* emitter = nullptr;  // none: it shines to all sides
+  // A bit for each smooth body that it may light straight, those from the 63rd on have one
+  // together; all, if one of these is clear and thus may send the light anywhere.
+  std::uint64_t lit = all_bodies;
+
+  static constexpr std::uint64_t all_bodies = ~std::uint64_t{0};
+  static std::uint64_t bit(int body) { return std::uint64_t{1} << std::min(body, 63); }
+  bool lights(int body) const { return (lit & bit(body)) != 0; }
+};
+
 // The scene's smooth surfaces (mirrors, clear bodies, smooth coats), found once. Clear bodies stand
 // in air: their outside has index 1.
 //
@@ -57,16 +75,18 @@ class Connector {
 
   // Replaces what `ways` holds. An opaque surface is lit from the side of `at.normal` only, so turn
   // it towards the viewer (see facing); a dielectric one from both sides.
-  // All ways from `light` to the surface point `at` that were found, the straight one first if it
+  // All ways from `lamp` to the surface point `at` that were found, the straight one first if it
   // is free, then by optical length; other surfaces between block it. Ways over smooth surfaces
   // solve Fermat's principle by Newton's method on the direction that leaves `at`, started from the
   // straight line (refraction) and from each mirror or glass facet's reflection of the light; of a
   // curved mirror's several solutions those nearest to the starts are found. The same for any
-  // thread.
-  void connect(const Hit& at, const Eigen::Vector3d& light, std::vector<Connection>& ways) const;
+  // thread. Ways over smooth surfaces that leave a lamp where it does not shine are left out.
+  void connect(const Hit& at, const Lamp& lamp, std::vector<Connection>& ways) const;
   // From a point in free space, such as one in fog, or inside a clear body.
-  void connect(const Eigen::Vector3d& at, const Eigen::Vector3d& light,
-               std::vector<Connection>& ways) const;
+  void connect(const Eigen::Vector3d& at, const Lamp& lamp, std::vector<Connection>& ways) const;
+
+  // For Lamp::lit.
+  std::uint64_t lit_bodies(const AnyEmitter& emitter) const;
 
   bool straight_only() const { return !surfaces_; }
 

@@ -155,9 +155,11 @@ void add_passage_starts(const SmoothSurfaces& surfaces, int s, bool is_inside,
 }  // namespace
 
 void add_curved_starts(const SmoothSurfaces& surfaces, const Eigen::Vector3d& from,
-                       const Eigen::Vector3d& target, int most, std::vector<Start>& starts) {
+                       const Lamp& lamp, int most, std::vector<Start>& starts) {
+  const Eigen::Vector3d target = lamp.position - surfaces.origin;
   for (const int s : surfaces.curved) {
     const SmoothBody& body = surfaces.body_of(s);
+    if (!lamp.lights(surfaces.sheets[s].body)) continue;
     const bool is_inside = body.is_clear && surfaces.is_inside(s, from);
     const bool reflects = !body.is_clear || body.index != 1;
     if (reflects) add_reflection_starts(surfaces, s, is_inside, from, target, starts);

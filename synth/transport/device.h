@@ -16,6 +16,7 @@ struct AnyEmitter {
   EmittedRay (*sample_of)(const void*, const Eigen::Vector2d&) = nullptr;
   double (*flux_of)(const void*) = nullptr;
   Brightest (*brightest_of)(const void*, const Eigen::Vector3d&, const Eigen::Vector3d&) = nullptr;
+  bool (*reaches_of)(const void*, const Eigen::Vector3d&, double) = nullptr;
 
   double irradiance(const Eigen::Vector3d& direction, double length_m) const {
     return irradiance_of(emitter, direction, length_m);
@@ -24,6 +25,9 @@ struct AnyEmitter {
   double flux() const { return flux_of(emitter); }
   Brightest brightest(const Eigen::Vector3d& origin, const Eigen::Vector3d& along) const {
     return brightest_of(emitter, origin, along);
+  }
+  bool reaches(const Eigen::Vector3d& centre, double radius_m) const {
+    return reaches_of(emitter, centre, radius_m);
   }
 };
 
@@ -44,6 +48,12 @@ AnyEmitter any_emitter(const E& emitter) {
               return own.brightest(origin, direction);
             else
               return nearest_to(own.position(), origin, direction);
+          },
+          .reaches_of = [](const void* e, const Eigen::Vector3d& centre, double radius_m) -> bool {
+            if constexpr (requires(const E& own) { own.reaches(centre, radius_m); })
+              return static_cast<const E*>(e)->reaches(centre, radius_m);
+            else
+              return true;
           }};
 }
 

@@ -28,7 +28,9 @@ double density_straight(Path& path, const Vertex& vertex) {
 double density_over_smooth(Path& path, const Vertex& vertex, const EmittedRay& ray, int bounces) {
   const AnyEmitter& emitter = path.emitter;
   const double aside_m = (emitter.position - ray.origin).cross(ray.direction).norm();
-  path.transport.connector().connect(vertex.hit, emitter.position, path.ways);
+  Lamp lamp(emitter.position);
+  lamp.lit = path.lit_bodies;  // and all directions, for those of light that is next to none
+  path.transport.connector().connect(vertex.hit, lamp, path.ways);
   for (const Connection& way : path.ways)
     if (way.bounces == bounces &&
         (way.emitted - ray.direction).norm() < 1e-6 + 2 * aside_m / way.length_m)

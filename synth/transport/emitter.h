@@ -30,7 +30,9 @@ struct Brightest {
 // between; 0 where it does not shine. sample(u): a ray drawn in proportion to the light, so flux is
 // the same for every ray; flux(): that number, the total. An emitter that lights a thin sheet or
 // beam should also have brightest(origin, direction), a Brightest for a ray through fog that
-// crosses it; without, that is the place nearest to position().
+// crosses it; without, that is the place nearest to position(). One that lights a small part of the
+// scene should have reaches(centre, radius_m): false only if it lights nothing in that ball, to
+// 1e-15 of its light.
 template <class T>
 concept Emitter = requires(const T& emitter, const Eigen::Vector3d& direction, double length_m,
                            const Eigen::Vector2d& u) {

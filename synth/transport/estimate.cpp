@@ -8,6 +8,7 @@
 #include <string>
 
 #include "libscan/core/error.h"
+#include "libscan/core/shortest.h"
 
 namespace scan::synth {
 namespace {
@@ -54,8 +55,8 @@ bool others_suffice(std::span<const double> sums, std::size_t signals, int per_s
 
 void check(const SamplingGoal& goal) {
   if (!(goal.share_of_noise >= 0))
-    throw Error(Trouble::input, "share_of_noise is " + std::to_string(goal.share_of_noise) +
-                                    ", must not be negative");
+    throw Error(Trouble::input,
+                "share_of_noise is " + shortest(goal.share_of_noise) + ", must not be negative");
   if (goal.least_samples < streams || goal.least_samples % streams != 0)
     throw Error(Trouble::input, "least_samples is " + std::to_string(goal.least_samples) +
                                     ", must be a multiple of 4 above 0");

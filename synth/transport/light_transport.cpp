@@ -206,6 +206,7 @@ void trace(const LightTransport& transport, const Ray& view, const AnyEmitter& e
             receiver,
             random,
             view.origin};
+  if constexpr (policy.smooth) path.lit_bodies = transport.connector().lit_bodies(emitter);
   if (view.min_m > 0) path.lens.setConstant(std::numeric_limits<double>::quiet_NaN());
   if (step<policy>(path, view.min_m, view.max_m)) walk<policy>(path);
 }

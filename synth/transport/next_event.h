@@ -20,30 +20,29 @@ double share_that_arrives(Path& path, const Vertex& vertex, const Connection& wa
 // out: the search takes longer than many steps of the walk inside.
 double chance_to_connect(const Path& path, const Vertex& vertex, const Eigen::Vector3d& light);
 
-// The ways from a point light to the vertex. Where nothing bends light there is but the straight
+// The ways from a lamp to the vertex. Where nothing bends light there is but the straight
 // one, and whether it is free is asked last: see is_free.
 template <Policy policy>
-std::span<const Connection> connect(Path& path, const Vertex& vertex,
-                                    const Eigen::Vector3d& light) {
+std::span<const Connection> connect(Path& path, const Vertex& vertex, const Lamp& lamp) {
   path.ways.clear();
   path.weight_of_ways = 1;
   if constexpr (policy.smooth && policy.media)
     if (vertex.phase && path.around.in_translucent_body()) {
-      const double chance = chance_to_connect(path, vertex, light);
+      const double chance = chance_to_connect(path, vertex, lamp.position);
       path.weight_of_ways = 1 / chance;
       if (!(path.random.next() < chance)) return {};
     }
   if constexpr (policy.smooth) {
     const Connector& connector = path.transport.connector();
     if (vertex.optics)
-      connector.connect(vertex.hit, light, path.ways);
+      connector.connect(vertex.hit, lamp, path.ways);
     else
-      connector.connect(vertex.hit.point, light, path.ways);
+      connector.connect(vertex.hit.point, lamp, path.ways);
     if (!path.transport.options().mirrors)
       std::erase_if(path.ways, [](const Connection& way) { return way.reflections > 0; });
     return path.ways;
   }
-  const Eigen::Vector3d to_light = light - vertex.hit.point;
+  const Eigen::Vector3d to_light = lamp.position - vertex.hit.point;
   path.straight.length_m = path.straight.optical_m = path.straight.open_m = to_light.norm();
   path.straight.arriving = to_light / path.straight.length_m;
   path.straight.emitted = -path.straight.arriving;
@@ -78,11 +77,18 @@ inline double emission_density(const AnyEmitter& emitter, const Vertex& vertex,
   return irradiance * way.throughput * way.spread * cosine(vertex, way.arriving) / emitter.flux();
 }
 
+inline Lamp device_lamp(const Path& path) {
+  Lamp lamp(path.emitter.position);
+  lamp.emitter = &path.emitter;
+  lamp.lit = path.lit_bodies;
+  return lamp;
+}
+
 // `weight`: of the vertex among other techniques that find it; `density_per_m2`: of finding it by
 // sampling a direction at the one before, 0 if emission sampling does not compete.
 template <Policy policy>
 void add_device_light(Path& path, const Vertex& vertex, double weight, double density_per_m2) {
-  for (const Connection& way : connect<policy>(path, vertex, path.emitter.position)) {
+  for (const Connection& way : connect<policy>(path, vertex, device_lamp(path))) {
     const double irradiance = path.emitter.irradiance(way.emitted, way.length_m);
     if (!(irradiance > 0)) continue;
     double electrons =

@@ -57,7 +57,8 @@ struct Path : Branch {
   SampleSequence& random;
   Eigen::Vector3d lens;  // not a number if the view skips a part of its way
   std::vector<Connection> ways{};
-  double weight_of_ways = 1;  // over their chance to be looked for
+  double weight_of_ways = 1;                    // over their chance to be looked for
+  std::uint64_t lit_bodies = Lamp::all_bodies;  // that the emitter lights
   Connection straight{};
   std::optional<LitPoint> lit{};
   bool lit_is_drawn = false;  // one serves all the path's vertices

@@ -65,6 +65,15 @@ void expect_proven(const json& check, bool noisy) {
   EXPECT_TRUE(noisy || open_share <= 0.05) << check.dump();
 }
 
+// All scans' rays over the seconds of their simulation.
+void expect_rate(const json& result) {
+  double rays = 0;
+  for (const json& scan : result.at("scans")) rays += scan.at("rays").get<double>();
+  EXPECT_GT(rays, 0);
+  const double expected = rays / result.at("seconds").at("simulate").get<double>();
+  EXPECT_NEAR(result.at("rays_per_second").get<double>(), expected, 1e-9 * expected);
+}
+
 class PlannerScenes : public testing::TestWithParam<std::string> {};
 
 TEST_P(PlannerScenes, ArePlannedWithinTheirBounds) {
@@ -74,6 +83,7 @@ TEST_P(PlannerScenes, ArePlannedWithinTheirBounds) {
       run_scan({"simulate", recipe, (folder / "run").string(), "--check", "--json"});
   ASSERT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 1) << outcome.err;
   const json result = json::parse(outcome.out);
+  expect_rate(result);
   std::set<std::string> on;
   for (const json& effect : result.at("effects")) {
     EXPECT_GT(effect.at("reason").get<std::string>().size(), 20u);

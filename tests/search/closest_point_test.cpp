@@ -191,13 +191,23 @@ ClosestPoint by_brute_force(const Mesh& mesh, const Eigen::Vector3d& query) {
   return best;
 }
 
+void expect_equal(const ClosestPoint& found, const ClosestPoint& expected) {
+  EXPECT_EQ(found.triangle, expected.triangle);
+  EXPECT_EQ(found.point, expected.point);
+  EXPECT_EQ(found.distance_m, expected.distance_m);
+}
+
+// One by one, with a guess that is some triangle or none, and all at once.
 void expect_brute_force(const Mesh& mesh, const Points& queries) {
   const MeshSearch search(mesh);
-  for (const auto& query : queries) {
-    const ClosestPoint found = search.closest(query), expected = by_brute_force(mesh, query);
-    EXPECT_EQ(found.triangle, expected.triangle);
-    EXPECT_EQ(found.point, expected.point);
-    EXPECT_EQ(found.distance_m, expected.distance_m);
+  const auto of_each = closest_of_each(search, queries);
+  ASSERT_EQ(of_each.size(), queries.size());
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const ClosestPoint expected = by_brute_force(mesh, queries[i]);
+    const auto guess = static_cast<std::uint32_t>(i * 7919 % (mesh.triangles.size() + 1));
+    expect_equal(search.closest(queries[i]), expected);
+    expect_equal(search.closest(queries[i], guess), expected);
+    expect_equal(of_each[i], expected);
   }
 }
 
@@ -236,6 +246,14 @@ TEST(MeshSearch, TakesTheLowestOfEquallyNearTriangles) {
 TEST(MeshSearch, BuildsTheSameInParallel) {
   // More than the size from which the two halves are built at the same time.
   expect_brute_force(triangle_soup(40000, 0.02, {0, 0, 0}), moved(uniform_cloud(20), 3, {0, 0, 0}));
+}
+
+TEST(MeshSearch, FindsNothingNearAQueryThatIsNotFinite) {
+  const MeshSearch search(doubled_plane(2));
+  const auto found = closest_of_each(search, Points{{0.3, 0.2, 1}, {0, std::nan(""), 0}});
+  EXPECT_EQ(found[0].distance_m, 1);
+  EXPECT_EQ(found[1].triangle, no_triangle);
+  EXPECT_EQ(found[1].distance_m, std::numeric_limits<double>::infinity());
 }
 
 TEST(MeshSearch, RefusesAMeshWithoutTriangles) {

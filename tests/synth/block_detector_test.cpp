@@ -35,7 +35,7 @@ double probability_below(double mean_e, double read_e, double limit_e) {
   return sum;
 }
 
-std::uint16_t reading(const BlockDetector& detector, double mean_e, double normal) {
+std::uint16_t reading(const BlockDetector& detector, double mean_e, float normal) {
   std::uint16_t result = 0;
   detector.read({&mean_e, 1}, {&normal, 1}, {&result, 1}, [](std::size_t) -> std::uint16_t {
     ADD_FAILURE() << "the closed form should hold";
@@ -46,9 +46,9 @@ std::uint16_t reading(const BlockDetector& detector, double mean_e, double norma
 
 // The normal number at which readings step beyond `dn`.
 double step_beyond(const BlockDetector& detector, double mean_e, int dn) {
-  double low = -8, high = 8;
+  float low = -8, high = 8;
   for (int i = 0; i < 45; ++i) {
-    const double middle = (low + high) / 2;
+    const float middle = (low + high) / 2;
     (reading(detector, mean_e, middle) <= dn ? low : high) = middle;
   }
   return low;
@@ -94,7 +94,7 @@ TEST(BlockDetector, CountsElectronsAsPoissonDoes) {
 TEST(BlockDetector, DrawsFromThatDistribution) {
   std::vector<BlockAddress> blocks;
   for (std::size_t i = 0; i < 250'000; ++i) blocks.push_back({i, 0});
-  std::vector<double> normals(4 * blocks.size());
+  std::vector<float> normals(4 * blocks.size());
   draw_normals(3, 1, blocks, normals);
   struct Case {
     double read_e, mean_e;
@@ -127,7 +127,7 @@ TEST(BlockDetector, AsksWhereItsFormDoesNotHold) {
   const auto asked = [&](const Sensor& sensor, const DetectorEffects& effects) {
     std::vector<std::size_t> which;
     std::vector<std::uint16_t> readings(expected_e.size());
-    const std::vector<double> normals(expected_e.size(), 0.0);
+    const std::vector<float> normals(expected_e.size(), 0.0F);
     BlockDetector(sensor, effects).read(expected_e, normals, readings, [&](std::size_t i) {
       which.push_back(i);
       return std::uint16_t{7};
@@ -164,8 +164,8 @@ TEST(BlockDetector, ReadsWithoutNoiseAsTheDetectorDoes) {
 TEST(BlockDetector, GivesTheSameBytesByEveryKernel) {
   std::vector<BlockAddress> blocks;
   for (std::size_t i = 0; i < 2000; ++i) blocks.push_back({i, 0});
-  std::vector<double> normals(4 * blocks.size() - 3), expected_e;
-  std::vector<double> all(4 * blocks.size());
+  std::vector<float> normals(4 * blocks.size() - 3), all(4 * blocks.size());
+  std::vector<double> expected_e;
   draw_normals(3, 1, blocks, all);
   std::copy_n(all.begin(), normals.size(), normals.begin());
   for (std::size_t i = 0; i < normals.size(); ++i)

@@ -43,9 +43,9 @@ TEST(Connector, FindsNoWayThroughAWall) {
   const auto hit = caster.closest({0.15, 0, 1.5}, Eigen::Vector3d::UnitZ());
   ASSERT_TRUE(hit);
   std::vector<Connection> ways(1);
-  connector.connect(*hit, {-0.1, 0, 0}, ways);  // passes z = 1 at x = 0.025
+  connector.connect(*hit, Eigen::Vector3d(-0.1, 0, 0), ways);  // passes z = 1 at x = 0.025
   EXPECT_TRUE(ways.empty());
-  connector.connect(*hit, {1, 0, 3}, ways);  // behind the surface
+  connector.connect(*hit, Eigen::Vector3d(1, 0, 3), ways);  // behind the surface
   EXPECT_TRUE(ways.empty());
 }
 
@@ -53,9 +53,9 @@ TEST(Connector, ConnectsPointsInFreeSpace) {
   const RayCaster caster(with_plate());
   const Connector connector(caster, 4);
   std::vector<Connection> ways;
-  connector.connect(Eigen::Vector3d(0, 0, 1.5), {0, 0, 0.5}, ways);
+  connector.connect(Eigen::Vector3d(0, 0, 1.5), Eigen::Vector3d(0, 0, 0.5), ways);
   EXPECT_TRUE(ways.empty());
-  connector.connect(Eigen::Vector3d(0.5, 0, 1.5), {0.5, 0, 0.5}, ways);
+  connector.connect(Eigen::Vector3d(0.5, 0, 1.5), Eigen::Vector3d(0.5, 0, 0.5), ways);
   ASSERT_EQ(ways.size(), 1u);
   EXPECT_EQ(ways[0].length_m, 1);
 }
@@ -134,7 +134,7 @@ TEST(PlaneMirror, BlockedBeforeAndBehindTheBend) {
     const RayCaster caster(scene);
     const Connector connector(caster, 4);
     std::vector<Connection> ways;
-    connector.connect(Eigen::Vector3d(0.5, 0, 1), {-0.5, 0, 1}, ways);
+    connector.connect(Eigen::Vector3d(0.5, 0, 1), Eigen::Vector3d(-0.5, 0, 1), ways);
     ASSERT_EQ(ways.size(), 1u);
     EXPECT_EQ(ways[0].bounces, 0);
   }
@@ -150,11 +150,11 @@ TEST(PlaneMirror, LightsWallsThatFaceIt) {
   std::vector<Connection> ways;
   const auto below = caster.closest({0.1, 0, 0.5}, Eigen::Vector3d::UnitZ());
   ASSERT_TRUE(below);
-  connector.connect(*below, {-0.1, 0, 0.6}, ways);
+  connector.connect(*below, Eigen::Vector3d(-0.1, 0, 0.6), ways);
   EXPECT_EQ(ways.size(), 2u);
   const auto above = caster.closest({0.1, 0, 1.5}, -Eigen::Vector3d::UnitZ());
   ASSERT_TRUE(above);
-  connector.connect(*above, {-0.1, 0, 1.6}, ways);
+  connector.connect(*above, Eigen::Vector3d(-0.1, 0, 1.6), ways);
   EXPECT_EQ(ways.size(), 1u);
 }
 
@@ -166,12 +166,12 @@ TEST(SmoothCoat, ReflectsByFresnel) {
   const RayCaster caster(scene);
   const Connector connector(caster, 4);
   std::vector<Connection> ways;
-  connector.connect(Eigen::Vector3d(0.5, 0, 1), {-0.5, 0, 1}, ways);
+  connector.connect(Eigen::Vector3d(0.5, 0, 1), Eigen::Vector3d(-0.5, 0, 1), ways);
   ASSERT_EQ(ways.size(), 2u);
   EXPECT_NEAR(ways[1].throughput, fresnel_dielectric(2 / std::sqrt(5.0), 1.45), 1e-13);
   const auto on_it = caster.closest({0, 0, 1}, -Eigen::Vector3d::UnitZ());
   ASSERT_TRUE(on_it);
-  connector.connect(*on_it, {-0.5, 0, 1}, ways);
+  connector.connect(*on_it, Eigen::Vector3d(-0.5, 0, 1), ways);
   EXPECT_EQ(ways.size(), 1u);
 }
 
@@ -187,7 +187,7 @@ TEST(Connector, WorksFarFromTheOrigin) {
   const Connector connector(caster, 8);
   std::vector<Connection> ways;
   connector.connect(Eigen::Vector3d(far + Eigen::Vector3d(0.2, 0.1, 0.5)),
-                    far + Eigen::Vector3d(-0.1, 0.1, 1.6), ways);
+                    Eigen::Vector3d(far + Eigen::Vector3d(-0.1, 0.1, 1.6)), ways);
   ASSERT_FALSE(ways.empty());
   EXPECT_EQ(ways[0].bounces, 2);
   EXPECT_EQ(with_bounces(ways, 3).size(), 1u);  // over the mirror, then through the pane
@@ -219,7 +219,7 @@ TEST(Connector, GivesTheSameOnAnyThread) {
     parallel_for(sums.size(), [&](std::size_t i) {
       std::vector<Connection> ways;
       const Eigen::Vector3d at(-0.2 + 0.002 * static_cast<double>(i), 0.03, 1.99);
-      connector.connect(at, {0.1, 0, 0}, ways);
+      connector.connect(at, Eigen::Vector3d(0.1, 0, 0), ways);
       for (const Connection& way : ways) sums[i] += way.throughput * way.spread + way.optical_m;
     });
     return sums;

@@ -136,13 +136,13 @@ TEST(Pane, WallBehindItBlocks) {
   const RayCaster caster(scene);
   const Connector connector(caster, 8);
   std::vector<Connection> ways;
-  connector.connect(Eigen::Vector3d(0.1, 0.2, 0.7), {0.1, 0.2, -0.4}, ways);
+  connector.connect(Eigen::Vector3d(0.1, 0.2, 0.7), Eigen::Vector3d(0.1, 0.2, -0.4), ways);
   EXPECT_TRUE(ways.empty());
   scene.materials[0].bsdf = Dielectric{.index = 1.5, .roughness = 0.1};
   scene.objects.pop_back();
   const RayCaster frosted_caster(scene);
   const Connector frosted(frosted_caster, 8);
-  frosted.connect(Eigen::Vector3d(0.1, 0.2, 0.7), {0.1, 0.2, -0.4}, ways);
+  frosted.connect(Eigen::Vector3d(0.1, 0.2, 0.7), Eigen::Vector3d(0.1, 0.2, -0.4), ways);
   EXPECT_TRUE(ways.empty());
 }
 
@@ -245,7 +245,7 @@ TEST(BallLens, SpreadsOnItsAxisAsItsMatrixSays) {
   const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, 2) / 3, centre(0.3, -0.2, 0.4);
   for (const double b : {0.025, 0.031, 0.06, 0.2}) {
     std::vector<Connection> ways;
-    connector.connect(centre + b * axis, centre - a * axis, ways);
+    connector.connect(centre + b * axis, Eigen::Vector3d(centre - a * axis), ways);
     const Connection* axial = nullptr;
     for (const Connection& way : ways)
       if (way.bounces == 2 && (way.arriving + axis).norm() < 1e-9) axial = &way;

@@ -108,5 +108,14 @@ TEST(Misfit, IsStiffOnlyByWhatIsBeyondDoubt) {
   EXPECT_FALSE(is_stiff(0.03, 0, 0, 0.021));
 }
 
+// Chance of 4 e^2; the last degree adds 0.01 of the unit of 600 e^2, residuals show 0.02 more. What
+// is less than chance explains is nothing.
+TEST(Misfit, IsPartOfAPixelsErrorBesidesChance) {
+  const auto one = [](double value) { return Eigen::ArrayXd::Constant(1, value); };
+  const Spread streams{.mean = one(50), .variance = one(4)};
+  EXPECT_DOUBLE_EQ(error_e2(streams, {one(9), one(0.01), one(9), 0.02}, 600)[0], 4 + 6 + 12);
+  EXPECT_DOUBLE_EQ(error_e2(streams, {one(9), one(-0.01), one(9), 0}, 600)[0], 4);
+}
+
 }  // namespace
 }  // namespace scan::synth

@@ -25,7 +25,9 @@ TEST(PulseTable, HoldsTheIntegralsOfAGaussian) {
     ASSERT_TRUE(table.exists()) << sigma;
     for (double middle = 150; middle < 151; middle += 0.00137) {
       std::vector<double> samples(400, 2.0);
-      const SampleRange touched = table.add(middle, 1000, samples);
+      const PulseTable::Place place = table.place(middle);
+      const SampleRange touched = table.touched(place, samples.size());
+      table.add(place, 1000, touched, &samples[touched.first]);
       for (std::size_t i = 0; i < samples.size(); ++i) {
         const double off = static_cast<double>(i) - middle;
         const double pulse = 1000 * share_between(sigma, off - 0.5, off + 0.5);
@@ -43,7 +45,9 @@ TEST(PulseTable, CutsPulsesAtTheWindowsEnds) {
   const PulseTable table(sigma);
   for (double middle = -30; middle < 50; middle += 0.31) {
     std::vector<double> samples(20, 0.0);
-    const SampleRange touched = table.add(middle, 1, samples);
+    const PulseTable::Place place = table.place(middle);
+    const SampleRange touched = table.touched(place, samples.size());
+    table.add(place, 1, touched, samples.data() + touched.first);
     EXPECT_LE(touched.first, touched.behind);
     EXPECT_LE(touched.behind, samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -54,6 +54,9 @@ constexpr double rounding_m = 1.2e-4;
 void expect_bound(const PhaseCamera& camera, const Scene& scene, Effect effect) {
   const double bound_m = weight_of(camera, scene, effect).bound_m;
   const double reached_m = largest_change_m(camera, scene, effect);
+  std::printf("bound: %-24s %9.4g mm, error %.4g mm, %.2f of it\n",
+              std::string(name(effect)).c_str(), bound_m * 1e3, reached_m * 1e3,
+              reached_m / bound_m);
   EXPECT_LE(reached_m, bound_m + rounding_m) << name(effect);
   EXPECT_GE(reached_m, bound_m / 10) << name(effect);
 }

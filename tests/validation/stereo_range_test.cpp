@@ -7,9 +7,10 @@
 namespace scan::synth {
 namespace {
 
-// What StereoOptions' block of 5 px makes of the decoder: a window of 5 x 5, its slope from 9 x 9.
-constexpr int half_window_px = 2;
-constexpr int half_slope_px = 4;
+// What StereoOptions' block of 5 px makes of the refinement: a window of 7 x 7, its slope from
+// 13 x 13.
+constexpr int half_window_px = 3;
+constexpr int half_slope_px = 6;
 constexpr int margin_px = 8;  // beside limb and image edges the matcher's own windows are cut
 // The match to be refined is wrong by at most so much: sixteenths, and the pull towards whole
 // pixels of a parabola through matching costs, which stays below a quarter (Szeliski and Scharstein
@@ -102,9 +103,9 @@ Eigen::Vector2d true_slope(const Image<double>& disparity, int column, int row) 
 //    inside the window, taken as they are;
 // 2. rounding of both images: half a level on the left, on the right half a level times the sum of
 //    absolute weights of cubic convolution, at most 1.25; in the worst combination of signs;
-// 3. an error of the window's slope, at most sum |x| / sum x^2 = 1 / 3 times that of the
-// disparities it
-//    is taken from, times the distance of the texture's weight from the window's centre.
+// 3. an error of the window's slope, at most sum |x| / sum x^2 = 3 / 13 times that of the
+//    disparities it is taken from, times the distance of the texture's weight from the window's
+//    centre.
 // The decoder stops at steps below 1e-4 px. Where the shift is no longer small, R's slope changes
 // on the way: premise.
 std::optional<double> disparity_error_px(const Exact& exact, int column, int row) {
@@ -131,7 +132,7 @@ std::optional<double> disparity_error_px(const Exact& exact, int column, int row
     rounding += std::abs(centred) * (0.5 + 0.5 * 1.25);
     centre += centred * g[i] * at[i];
   }
-  const double slope_part = match_error_px / 3 * centre.lpNorm<1>() / texture;
+  const double slope_part = match_error_px * 3 / 13 * centre.lpNorm<1>() / texture;
   const double error = (std::abs(residual) + rounding) / texture + slope_part + 1e-4;
   if (error > 0.5) return std::nullopt;  // hardly any texture
   return error;

@@ -164,5 +164,35 @@ TEST(Summarise, TakesLargestAndMean) {
   EXPECT_DOUBLE_EQ(figure(figures, "pose_error_rms_mean"), 3);
 }
 
+// Two poses; the second is off by a turn of 0.1 about its own z and by 0.2 along its x, so that its
+// motion to the first is off by just these, wherever the world frame lies.
+TEST(RelativePoseErrors, AreThoseOfTheMotionBetweenNeighbours) {
+  RandomStream random(4, 0, 0);
+  const Pose first = random_pose(random, 1, 2), second = random_pose(random, 1, 2);
+  const Pose other_world = random_pose(random, 1, 5);
+  Vector6 turn = Vector6::Zero(), shift = Vector6::Zero();
+  turn(2) = 0.1;
+  shift(3) = 0.2;
+  const std::vector<Pose> truth{first, second};
+  const std::vector<Points> points{octahedron(), octahedron()};
+  const auto turned = relative_pose_errors(
+      std::vector<Pose>{other_world * first, other_world * second * exp(turn)}, truth, points);
+  ASSERT_EQ(turned.size(), 1u);
+  EXPECT_NEAR(turned[0].rotation_rad, 0.1, 1e-13);
+  const auto shifted = relative_pose_errors(
+      std::vector<Pose>{other_world * first, other_world * second * exp(shift)}, truth, points);
+  EXPECT_NEAR(shifted[0].rotation_rad, 0, 1e-13);
+  EXPECT_NEAR(shifted[0].translation_m, 0.2, 1e-13);
+  const auto figures = summarise_relative(shifted);
+  EXPECT_NEAR(figure(figures, "relative_translation_error"), 0.2, 1e-13);
+  EXPECT_NEAR(figure(figures, "relative_translation_error_mean"), 0.2, 1e-13);
+}
+
+TEST(RelativePoseErrors, OfASingleScanAreNone) {
+  const std::vector<Pose> one{Pose::Identity()};
+  EXPECT_TRUE(relative_pose_errors(one, one, std::vector<Points>{octahedron()}).empty());
+  EXPECT_TRUE(summarise_relative({}).empty());
+}
+
 }  // namespace
 }  // namespace scan

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// `scan tradeoff` as a user runs it: advice, files, a second call, and slips in its recipe.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/program.h"
+
+namespace scan::test {
+namespace {
+
+constexpr int failed = 1, input = 3, computation = 4, output = 5;
+
+// Six small phase scans of a lump; only the surface's depth is varied.
+std::string recipe(const std::string& vary) {
+  return R"({"libscan": 1, "name": "lump", "seed": 5,
+    "scene": {"objects": [{"name": "lump", "material": "clay", "shape": {"unite": {"blend_mm": 40,
+        "parts": [{"shape": {"sphere": {"radius_mm": 150}}},
+                  {"shape": {"box": {"size_mm": [180, 120, 150], "rounding_mm": 20}},
+                   "position_mm": [120, 40, -60]}]}}}],
+      "materials": {"clay": {"diffuse": 0.8}}},
+    "scanner": {"phase_camera": {"camera": {"width_px": 80, "height_px": 60, "focal_px": 90},
+      "frequencies_mhz": [60, 100], "electrons_at_1m": 60000, "contrast": 0.6,
+      "sensor": {"gain_e_per_dn": 2, "read_noise_e": 20, "full_well_e": 120000, "bits": 16},
+      "max_range_m": 7}},
+    "viewpoints": {"dome": {"count": 6, "radius_mm": 900, "lowest_deg": -60,
+      "pose_noise": {"rotation_deg": 0.2, "translation_mm": 1}}},
+    "effects": ["shot-noise"], "verify": {"samples": 2000}, "tradeoff": )" +
+         vary + "}";
+}
+
+Outcome tradeoff(const Folder& folder, const std::string& vary,
+                 const std::vector<std::string>& more = {}) {
+  spill(folder / "lump.json", recipe(vary));
+  std::vector<std::string> arguments{"tradeoff", (folder / "lump.json").string(),
+                                     (folder / "out").string(), "--json"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run_scan(arguments);
+}
+
+const std::string depths =
+    R"({"vary": [{"key": "reconstruct/depth", "values": [3, 5]}], "seeds": 2})";
+
+TEST(Tradeoff, AdvisesTheCheapestSettingsWithinTheTolerance) {
+  const Folder folder;
+  const Outcome outcome = tradeoff(folder, depths, {"--tolerance", "1m"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  ASSERT_EQ(json.at("runs").size(), 2u);
+  const auto& coarse = json.at("runs")[0];
+  const auto& fine = json.at("runs")[1];
+  EXPECT_LT(fine.at("error_m"), coarse.at("error_m"));
+  EXPECT_TRUE(json.at("advice").at("meets"));
+  double shares = 0;
+  for (const auto& source : json.at("sources")) shares += source.at("share").get<double>();
+  EXPECT_GE(shares, 1 - 1e-9);  // more if a source that is spared makes the error larger
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/tradeoff.html"));
+  EXPECT_NE(slurp(folder / "out/tradeoff.html").find("<svg"), std::string::npos);
+  // runs of one seed share what their settings share: the same points, to the byte
+  EXPECT_EQ(slurp(folder / "out/runs/0-seed0/scans/003.ply"),
+            slurp(folder / "out/runs/1-seed0/scans/003.ply"));
+
+  EXPECT_EQ(tradeoff(folder, depths).exit_code, output);
+  const Outcome again = tradeoff(folder, depths, {"--tolerance", "1um", "--resume"});
+  EXPECT_EQ(again.exit_code, failed) << again.err;
+  EXPECT_EQ(nlohmann::json::parse(again.out).at("runs")[1].at("error_m"), fine.at("error_m"));
+}
+
+TEST(Tradeoff, NamesWhatIsWrongWithItsRecipe) {
+  const Folder folder;
+  const auto said = [&](const std::string& vary) {
+    const Outcome outcome = tradeoff(folder, vary, {"--force"});
+    EXPECT_EQ(outcome.exit_code, input) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_NE(said(R"({"vary": [{"key": "reconstruct/deph", "values": [3]}]})").find("depth"),
+            std::string::npos);
+  EXPECT_NE(said(R"({"vary": [{"key": "reconstruct/depth", "values": [99]}]})").find("99"),
+            std::string::npos);
+  EXPECT_NE(said(R"({"vary": [{"key": "reconstruct/depth", "values": [3]}], "seeds": 1,
+                     "error": "accuracy_rmz"})")
+                .find("accuracy_rmz"),
+            std::string::npos);
+}
+
+// A scanner that sees nothing within its range: each run fails, and the first reason is given.
+TEST(Tradeoff, OfRunsThatAllFailSaysWhy) {
+  const Folder folder;
+  const Outcome outcome = tradeoff(
+      folder, R"({"vary": [{"key": "scanner/phase_camera/electrons_at_1m", "values": [1e-3]}],
+                  "seeds": 1})");
+  EXPECT_EQ(outcome.exit_code, computation) << outcome.err;
+  EXPECT_NE(outcome.err.find("no ray gave a point"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace scan::test

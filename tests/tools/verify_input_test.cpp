@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// What `scan verify` makes of input that cannot be right: said in one line, with the right exit
+// code.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/program.h"
+
+namespace scan::test {
+namespace {
+
+constexpr int failed = 1, input = 3;
+
+// A cube of the given edge with a corner at (x, 0, 0); `extra` are further lines of faces.
+std::string cube_off(double edge, double x, const std::string& extra = "", int extra_faces = 0) {
+  std::string text = "OFF\n8 " + std::to_string(12 + extra_faces) + " 0\n";
+  for (int corner = 0; corner < 8; ++corner) {
+    char line[96];
+    std::snprintf(line, sizeof line, "%.17g %.17g %.17g\n", x + edge * (corner & 1),
+                  edge * (corner >> 1 & 1), edge * (corner >> 2 & 1));
+    text += line;
+  }
+  for (const char* face : {"0 2 3", "0 3 1", "4 5 7", "4 7 6", "0 1 5", "0 5 4", "2 6 7", "2 7 3",
+                           "0 4 6", "0 6 2", "1 3 7", "1 7 5"})
+    text += std::string("3 ") + face + "\n";
+  return text + extra;
+}
+
+struct Judged {
+  Outcome outcome;
+  nlohmann::json json;
+  double figure(const std::string& name) const {
+    for (const auto& m : json.at("measurements"))
+      if (m.at("name") == name) return m.at("value").get<double>();
+    throw std::runtime_error(name + " was not measured");
+  }
+};
+
+Judged judged(const Folder& folder, const std::string& measured,
+              const std::vector<std::string>& more = {}) {
+  spill(folder / "measured.off", measured);
+  spill(folder / "truth.off", cube_off(1, 0));
+  std::vector<std::string> arguments{
+      "verify", (folder / "measured.off").string(), "--truth", (folder / "truth.off").string(),
+      "--json",
+  };
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  Judged result{run_scan(arguments), {}};
+  if (!result.outcome.out.empty()) result.json = nlohmann::json::parse(result.outcome.out);
+  return result;
+}
+
+bool says(const Outcome& outcome, const std::string& words) {
+  return outcome.err.find(words) != std::string::npos;
+}
+
+TEST(VerifyInput, AGrownCubeHasItsClosedFormFigures) {
+  const Folder folder;
+  const Judged same = judged(folder, cube_off(1.001, 0));
+  EXPECT_EQ(same.outcome.exit_code, 0) << same.outcome.err;
+  EXPECT_NEAR(same.figure("volume_error"), 1.001 * 1.001 * 1.001 - 1, 1e-12);
+  EXPECT_NEAR(same.figure("area_error"), 1.001 * 1.001 - 1, 1e-12);
+  EXPECT_FALSE(says(same.outcome, "another")) << same.outcome.err;
+}
+
+TEST(VerifyInput, AnotherUnitIsSuspectedWithItsFactor) {
+  const Folder folder;
+  const Judged other = judged(folder, cube_off(1000, 0));
+  EXPECT_TRUE(says(other.outcome, "measured.off: its size is")) << other.outcome.err;
+  EXPECT_TRUE(says(other.outcome, "scale it by 0.001")) << other.outcome.err;
+}
+
+TEST(VerifyInput, AnotherFrameIsSuspectedWithItsGap) {
+  const Folder folder;
+  const Judged other = judged(folder, cube_off(1, 10));
+  EXPECT_TRUE(says(other.outcome, "another frame? Then align it first")) << other.outcome.err;
+}
+
+TEST(VerifyInput, ATriangleWithoutAreaDoesNoHarm) {
+  const Folder folder;
+  const Judged thin = judged(folder, cube_off(1, 0, "3 0 0 1\n", 1));
+  EXPECT_EQ(thin.outcome.exit_code, 0) << thin.outcome.err;
+  EXPECT_NEAR(thin.figure("accuracy_max"), 0, 1e-15);
+}
+
+TEST(VerifyInput, ABrokenMeshIsRefusedByName) {
+  const Folder folder;
+  for (const std::string& broken :
+       {std::string("OFF\n0 0 0\n"), std::string("OFF\n3 1 0\n0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n"),
+        cube_off(1, 0, "3 0 1 99\n", 1)}) {
+    const Judged refused = judged(folder, broken);
+    EXPECT_EQ(refused.outcome.exit_code, input) << broken << refused.outcome.err;
+    EXPECT_TRUE(says(refused.outcome, "error: ")) << refused.outcome.err;
+    EXPECT_TRUE(says(refused.outcome, "measured.off")) << refused.outcome.err;
+  }
+}
+
+TEST(VerifyInput, ALimitOnWhatWasNotMeasuredIsAnError) {
+  const Folder folder;
+  const auto limits = (folder / "limits.json").string();
+  spill(limits, R"([{"name": "accuracy_rmz", "at_most_mm": 1, "reason": "a slip"}])");
+  const Judged slip = judged(folder, cube_off(1, 0), {"--limits", limits});
+  EXPECT_EQ(slip.outcome.exit_code, input) << slip.outcome.err;
+  EXPECT_TRUE(says(slip.outcome, "accuracy_rms")) << slip.outcome.err;
+  spill(limits, R"([{"name": "accuracy_rms", "at_most_mm": 1, "reason": "the process"}])");
+  EXPECT_EQ(judged(folder, cube_off(1.1, 0), {"--limits", limits}).outcome.exit_code, failed);
+}
+
+}  // namespace
+}  // namespace scan::test

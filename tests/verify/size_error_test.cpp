@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Areas and volumes of scaled and rounded solids against closed forms and against each other.
+#include "libscan/verify/size_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "libscan/core/random.h"
+#include "tests/core/meshes.h"
+#include "tests/verify/figure.h"
+
+namespace scan {
+namespace {
+
+Mesh scaled(Mesh mesh, double factor) {
+  for (auto& vertex : mesh.vertices) vertex *= factor;
+  return mesh;
+}
+
+// Sums of 12 triangles round at a few 1e-16.
+TEST(SizeError, OfAScaledMeshIsThePowerOfTheScale) {
+  const Mesh one = cube(1);
+  const auto errors = size_error(scaled(one, 1.01), {{}, {one}});
+  EXPECT_NEAR(figure(errors, "area_error"), 1.01 * 1.01 - 1, 1e-14);
+  EXPECT_NEAR(figure(errors, "volume_error"), 1.01 * 1.01 * 1.01 - 1, 1e-14);
+}
+
+// A box against the unit cube's mesh, and a rounded one against what its rounding takes away: along
+// the 12 edges a square less a quarter disc, at the 8 corners a cube less an eighth of a ball, with
+// the edges' parts cut back to 1 - 2 r.
+TEST(SizeError, OfBoxes) {
+  const auto error = [](double rounding, const char* name) {
+    const TrueSurface box{{{Pose::Identity(), BoxShape{Eigen::Vector3d::Ones(), rounding}}}, {}};
+    return figure(size_error(cube(1), box), name);
+  };
+  EXPECT_NEAR(error(0, "area_error"), 0, 1e-14);
+  EXPECT_NEAR(error(0, "volume_error"), 0, 1e-14);
+  const double r = 0.1, pi = std::numbers::pi;
+  const double volume =
+      1 - 12 * (1 - 2 * r) * (r * r - pi / 4 * r * r) - 8 * (r * r * r - pi / 6 * r * r * r);
+  EXPECT_NEAR(error(r, "volume_error"), 1 / volume - 1, 1e-14);
+  const double area =
+      6 * (1 - 2 * r) * (1 - 2 * r) + 12 * (1 - 2 * r) * (pi / 2 * r) + 8 * (pi / 2 * r * r);
+  EXPECT_NEAR(error(r, "area_error"), 6 / area - 1, 1e-14);
+}
+
+// The volume is that of the inside of the field: of 200,000 places drawn in a box around the solid
+// a share p = V / V_box falls inside, +- 5 sqrt(p (1 - p) / n).
+TEST(SizeError, VolumesAreThoseOfTheFields) {
+  const std::vector<PlacedShape> solids = {{Pose::Identity(), SphereShape{0.8}},
+                                           {Pose::Identity(), CylinderShape{0.5, 1.2}},
+                                           {Pose::Identity(), BoxShape{{1, 0.8, 1.4}, 0.2}},
+                                           {Pose::Identity(), TorusShape{0.6, 0.25}}};
+  for (const PlacedShape& solid : solids) {
+    constexpr std::size_t n = 200'000;
+    const Bounds box = bounds_of(solid);
+    std::size_t inside = 0;
+    for (std::uint64_t i = 0; i < n; ++i) {
+      RandomStream random(1, 0, i);
+      const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+      inside +=
+          field(solid, box.min() + box.sizes().cwiseProduct(Eigen::Vector3d(x, y, z))).value_m < 0;
+    }
+    const double p = static_cast<double>(inside) / n, spread = 5 * std::sqrt(p * (1 - p) / n);
+    const double true_volume = 1 / (1 + figure(size_error(cube(1), {{solid}, {}}), "volume_error"));
+    EXPECT_NEAR(true_volume / box.volume(), p, spread);
+  }
+}
+
+TEST(SizeError, LeavesOutWhatIsNotDefined) {
+  Mesh open = cube(1);
+  open.triangles.pop_back();
+  EXPECT_EQ(size_error(open, {{}, {cube(1)}}).size(), 1u);
+  EXPECT_EQ(size_error(cube(1), {{}, {open}}).size(), 1u);
+  EXPECT_TRUE(size_error(cube(1), {{}, {open, open}}).empty());
+  EXPECT_TRUE(size_error(cube(1), {{{Pose::Identity(), PlaneShape{}}}, {}}).empty());
+}
+
+}  // namespace
+}  // namespace scan

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// A scanner's data sheet: calibrated bodies simulated, scanned and measured.
+#pragma once
+
+#include <vector>
+
+#include "libscan/verify/verdict.h"
+#include "tools/console.h"
+#include "tools/recipe.h"
+
+namespace scan {
+
+// `predicted`: the same figure of points drawn around the true ones with the sigma that the scan
+// itself states, independent and without bias; the median of seven draws. A measured figure far
+// above it shows what that sigma leaves out. NaN where the scan states none.
+struct SheetLine {
+  Measurement measured;
+  double predicted = 0;
+};
+
+// From the recipe's first viewpoint, with its scanner, effects, lights and medium, and the bodies
+// of its first material in the place of its objects. Points count where the true surface is turned
+// away from the ray by less than 60 degrees and, on plates and steps, lies in the inner 0.9 of the
+// face. Throws scan::Error (computation) for a place without enough points, (input) for a recipe
+// without artefacts.
+std::vector<SheetLine> artefact_sheet(const Recipe& recipe, Console& console);
+
+}  // namespace scan

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// What accuracy costs, as one self-contained page: advice, curve, table.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace scan {
+
+// `tradeoff` has the keys of tradeoff.json (tools/tradeoff.cpp).
+std::string tradeoff_page(const std::string& title, const nlohmann::ordered_json& tradeoff);
+
+}  // namespace scan

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// The runs of a study: each in a folder of its own, sharing the stages that their settings share.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/console.h"
+#include "tools/recipe.h"
+
+namespace scan {
+
+// What one run gave. `seconds` by stage: simulate, acquire, align, reconstruct; a stage that was
+// shared counts what it took when it was done.
+struct RunOutcome {
+  double error = 0;  // the figure, in its unit; NaN if the run failed
+  std::string unit;  // "m", "rad", ...
+  std::map<std::string, double> seconds;
+  std::string trouble;  // why it failed, empty if it did not
+
+  double total_s() const;
+};
+
+// Which errors a run is spared, to tell what the others come from.
+struct Spared {
+  bool poses = false;    // the true poses stand in for the aligned ones
+  bool effects = false;  // the scanner is simulated without any effect
+};
+
+class StudyRuns {
+ public:
+  // `base`: the recipe as it stands in its file, without "tradeoff"; `place` and `folder` are its
+  // file and where its meshes lie. Runs go to `out`/runs.
+  StudyRuns(nlohmann::json base, std::string place, std::filesystem::path folder,
+            std::filesystem::path out);
+
+  // Runs `recipe`, a variant of the base, under this seed; or reads its outcome if the folder
+  // `name` holds the same run already. scan::Error (input) for a recipe that cannot be read or a
+  // figure that no run measures; what fails later is the outcome's trouble.
+  RunOutcome run(const std::string& name, const nlohmann::json& recipe, std::uint64_t seed,
+                 const std::string& figure, const Spared& spared = {});
+
+  const nlohmann::json& base() const { return base_; }
+
+ private:
+  void stages(const std::filesystem::path& run, const Recipe& recipe, const Spared& spared,
+              Console& console, std::map<std::string, double>& seconds);
+
+  nlohmann::json base_;
+  std::string place_;
+  std::filesystem::path folder_, runs_;
+  struct Done {
+    std::filesystem::path run;
+    std::map<std::string, double> seconds;
+  };
+  std::map<std::string, Done> done_;  // by the fingerprint of all that decides a stage
+};
+
+}  // namespace scan
