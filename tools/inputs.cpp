@@ -104,4 +104,14 @@ PointCloud joined(const std::vector<Scan>& scans, const std::vector<Pose>& world
   return all;
 }
 
+std::vector<Eigen::Vector3d> joined_viewpoints(const std::vector<Scan>& scans,
+                                               const std::vector<Pose>& world_from_scan) {
+  std::vector<Eigen::Vector3d> all;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (scans[i].ray.size() != scans[i].cloud.size()) return {};
+    all.insert(all.end(), scans[i].cloud.size(), world_from_scan[i] * scans[i].viewpoint);
+  }
+  return all;
+}
+
 }  // namespace scan

@@ -39,4 +39,8 @@ bool tell_of_pose(const std::string& scan, const ScanPose& pose, Console& consol
 // The scans' points in one cloud, world frame.
 PointCloud joined(const std::vector<Scan>& scans, const std::vector<Pose>& world_from_scan);
 
+// Where the scanner of each of these points stood; empty unless every scan knows its rays.
+std::vector<Eigen::Vector3d> joined_viewpoints(const std::vector<Scan>& scans,
+                                               const std::vector<Pose>& world_from_scan);
+
 }  // namespace scan

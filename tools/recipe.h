@@ -14,7 +14,7 @@
 
 #include "libscan/acquire/acquire.h"
 #include "libscan/align/multiview.h"
-#include "libscan/reconstruct/ssd.h"
+#include "libscan/reconstruct/reconstruct.h"
 #include "libscan/verify/verdict.h"
 #include "synth/artefacts.h"
 #include "synth/effects/plan.h"
@@ -23,8 +23,6 @@
 #include "tools/recipe_scene.h"
 
 namespace scan {
-
-enum class ReconstructMethod { ssd, delaunay };
 
 struct ReconstructSettings {
   ReconstructMethod method = ReconstructMethod::ssd;

@@ -55,7 +55,7 @@ void fields(Fields& f, MultiviewOptions& o) {
 }
 
 void fields(Fields& f, ReconstructSettings& s) {
-  enumeration(f, "method", s.method, {"ssd", "delaunay"});
+  enumeration(f, "method", s.method, reconstruct_method_names());
   f.integer("depth", s.ssd.depth);
   f.length("sigma", s.ssd.sigma_m);
   f.length("smoothing_length", s.ssd.smoothing_length_m);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // scan reconstruct: oriented points to a surface.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
@@ -36,15 +37,19 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
     for (std::size_t i = 0; i < scans.size(); ++i) poses[i] = named[i].pose;
   }
   ReconstructSettings settings;
-  settings.method =
-      arguments.method == "ssd" ? ReconstructMethod::ssd : ReconstructMethod::delaunay;
+  const auto& names = reconstruct_method_names();
+  settings.method = static_cast<ReconstructMethod>(
+      std::find(names.begin(), names.end(), arguments.method) - names.begin());
   settings.ssd.depth = static_cast<int>(arguments.depth);
   settings.trim_m = arguments.trim_m;
   settings.thin_m = arguments.thin_m;
 
-  const SurfaceResult result = make_surface(joined(scans, poses), settings, console);
+  const SurfaceResult result =
+      make_surface(joined(scans, poses), joined_viewpoints(scans, poses), settings, console);
   write_mesh(output, result.surface);
-  const auto json = surface_json(arguments.method, result);
+  const auto json = surface_json(result);
+  if (settings.method == ReconstructMethod::automatic)
+    console.say("method " + result.method + ": " + result.method_reason);
   console.say(output + ": " + std::to_string(result.surface.vertices.size()) + " vertices, " +
               std::to_string(result.surface.triangles.size()) + " triangles, " +
               std::to_string(json.at("components").get<int>()) + " components, " +
@@ -62,7 +67,7 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
 Action reconstruct_command(CommandLine& line) {
   auto arguments = std::make_shared<Arguments>();
   line.inputs("INPUT... OUT", arguments->paths, "points with normals; last the mesh to write");
-  line.choice("--method", arguments->method, {"ssd", "delaunay"}, "how the surface is made");
+  line.choice("--method", arguments->method, reconstruct_method_names(), "how the surface is made");
   line.whole("--depth", arguments->depth, 3, 12,
              "ssd: most; cells are not narrower than box / 2^depth");
   line.option("--poses", arguments->poses, "a pose for each input, in their order");

@@ -68,11 +68,12 @@ void align_run(const std::filesystem::path& run, const Recipe& recipe, Console& 
 }
 
 void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Console& console) {
-  const SurfaceResult result =
-      make_surface(joined(read_run_scans(run), read_run_poses(run)), recipe.reconstruct, console);
+  const std::vector<Scan> scans = read_run_scans(run);
+  const std::vector<Pose> poses = read_run_poses(run);
+  const SurfaceResult result = make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
+                                            recipe.reconstruct, console);
   write_mesh(run / "surface.ply", result.surface);
-  write_json(run / "reconstruction.json",
-             surface_json(std::string(name_of(recipe.reconstruct.method)), result));
+  write_json(run / "reconstruction.json", surface_json(result));
 }
 
 Verdict verify_run(const std::filesystem::path& run, Console&) {

@@ -3,41 +3,54 @@
 #include "tools/surface_stage.h"
 
 #include "libscan/core/error.h"
-#include "libscan/reconstruct/delaunay.h"
 #include "libscan/reconstruct/trim.h"
 #include "libscan/search/voxel_grid.h"
 
 namespace scan {
 namespace {
 
-PointCloud without_large_sigma(const PointCloud& cloud, double max_sigma_m) {
+void leave_out_large_sigma(PointCloud& cloud, std::vector<Eigen::Vector3d>& viewpoints,
+                           double max_sigma_m) {
   std::vector<std::uint32_t> kept;
+  std::vector<Eigen::Vector3d> kept_viewpoints;
   for (std::uint32_t i = 0; i < cloud.size(); ++i)
-    if (cloud.sigma_m[i] <= max_sigma_m) kept.push_back(i);
+    if (cloud.sigma_m[i] <= max_sigma_m) {
+      kept.push_back(i);
+      if (!viewpoints.empty()) kept_viewpoints.push_back(viewpoints[i]);
+    }
   if (kept.empty())
     throw Error(Trouble::computation,
                 "no point has a sigma of at most " + readable_length(max_sigma_m) + " (max_sigma)");
-  return subset(cloud, kept);
+  cloud = subset(cloud, kept);
+  viewpoints = std::move(kept_viewpoints);
+}
+
+// What was done to the points, as far as it was not nothing.
+void tell_of_points(const SurfaceResult& result, Console& console) {
+  const auto tell = [&](std::size_t count, const char* what) {
+    if (count > 0) console.warn(std::to_string(count) + what);
+  };
+  tell(result.invalid_points,
+       " points without coordinates, normal or place in the box were left out");
+  tell(result.outlying_points, " points that lie on no surface were left out");
+  tell(result.estimated_normals, " points had no normal and got that of their neighbours' plane");
+  tell(result.turned_normals, " normals contradicted their neighbours and were turned round");
 }
 
 }  // namespace
 
-std::string_view name_of(ReconstructMethod method) {
-  return method == ReconstructMethod::ssd ? "ssd" : "delaunay";
-}
-
-SurfaceResult make_surface(PointCloud cloud, const ReconstructSettings& settings,
-                           Console& console) {
+SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpoints,
+                           const ReconstructSettings& settings, Console& console) {
   if (settings.max_sigma_m > 0 && !cloud.sigma_m.empty())
-    cloud = without_large_sigma(cloud, settings.max_sigma_m);
-  if (settings.thin_m > 0) cloud = voxel_grid(cloud, settings.thin_m);
-  SurfaceResult result = settings.method == ReconstructMethod::ssd
-                             ? ssd(cloud, settings.ssd, console.progress())
-                             : delaunay(cloud);
+    leave_out_large_sigma(cloud, viewpoints, settings.max_sigma_m);
+  if (settings.thin_m > 0) {
+    cloud = voxel_grid(cloud, settings.thin_m);
+    viewpoints.clear();  // a cube's mean was seen from several places
+  }
+  SurfaceResult result = reconstruct(
+      cloud, viewpoints, {.method = settings.method, .ssd = settings.ssd}, console.progress());
   console.time("reconstruct", result.cost.seconds);
-  if (result.invalid_points > 0)
-    console.warn(std::to_string(result.invalid_points) +
-                 " points without coordinates, normal or place in the box were left out");
+  tell_of_points(result, console);
   if (settings.trim_m > 0) trim(result, settings.trim_m);
   if (result.surface.triangles.empty())
     throw Error(Trouble::computation, "nothing of the surface is within " +

@@ -10,9 +10,8 @@
 namespace scan {
 
 // Leaves out points with too large a sigma, thins, reconstructs and trims. The cloud is in the
-// world frame and has normals.
-SurfaceResult make_surface(PointCloud cloud, const ReconstructSettings& settings, Console& console);
-
-std::string_view name_of(ReconstructMethod method);
+// world frame; `viewpoints` holds where the scanner of each point stood, or is empty.
+SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpoints,
+                           const ReconstructSettings& settings, Console& console);
 
 }  // namespace scan

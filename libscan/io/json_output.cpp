@@ -85,9 +85,10 @@ ordered_json alignment_json(std::span<const std::string> files, const MultiviewR
           {"pairs_used", result.pairs_used}};
 }
 
-ordered_json surface_json(const std::string& method, const SurfaceResult& result) {
+ordered_json surface_json(const SurfaceResult& result) {
   const EdgeCensus census = edge_census(result.surface);
-  return {{"method", method},
+  return {{"method", result.method},
+          {"method_reason", result.method_reason},
           {"depth", result.depth > 0 ? ordered_json(result.depth) : ordered_json(nullptr)},
           {"vertices", result.surface.vertices.size()},
           {"triangles", result.surface.triangles.size()},
@@ -101,7 +102,10 @@ ordered_json surface_json(const std::string& method, const SurfaceResult& result
           {"sigma_m", number(result.sigma_m)},
           {"smoothing_length_m", number(result.smoothing_length_m)},
           {"stop", name_of(result.stop)},
-          {"invalid_points", result.invalid_points}};
+          {"invalid_points", result.invalid_points},
+          {"outlying_points", result.outlying_points},
+          {"estimated_normals", result.estimated_normals},
+          {"turned_normals", result.turned_normals}};
 }
 
 ordered_json measurement_json(const Measurement& m) {

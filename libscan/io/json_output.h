@@ -32,10 +32,11 @@ nlohmann::ordered_json scan_json(const std::string& file, const Scan& scan);
 nlohmann::ordered_json alignment_json(std::span<const std::string> files,
                                       const MultiviewResult& result, const IcpOptions& options);
 
-// reconstruction.json: `method`, `depth` (null for methods without), `vertices`, `triangles`,
-// `components`, `watertight`, `genus`, `relative_residual`, `iterations`, `unknowns`,
-// `finest_cell_m`, `sigma_m`, `smoothing_length_m`, `stop`, `invalid_points`.
-nlohmann::ordered_json surface_json(const std::string& method, const SurfaceResult& result);
+// reconstruction.json: `method`, `method_reason`, `depth` (null for methods without), `vertices`,
+// `triangles`, `components`, `watertight`, `genus`, `relative_residual`, `iterations`, `unknowns`,
+// `finest_cell_m`, `sigma_m`, `smoothing_length_m`, `stop`, `invalid_points`, `outlying_points`,
+// `estimated_normals`, `turned_normals`.
+nlohmann::ordered_json surface_json(const SurfaceResult& result);
 
 // `name`, `value`, `unit`, `over`, `count`, `limit`, `relation`, `pass`, `reason`; limit, relation
 // and reason are null without a limit.

@@ -4,6 +4,7 @@
 
 #include <CGAL/Advancing_front_surface_reconstruction.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Random.h>
 
 #include <iterator>
 
@@ -11,6 +12,7 @@ namespace scan {
 
 Mesh advancing_front(std::span<const Eigen::Vector3d> points) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  CGAL::get_default_random() = CGAL::Random(1);  // else each call starts where the last one ended
   std::vector<Kernel::Point_3> input;
   for (const auto& x : points) input.emplace_back(x[0], x[1], x[2]);
   std::vector<std::array<std::size_t, 3>> faces;

@@ -2,67 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/reconstruct/delaunay.h"
 
-#include <algorithm>
-#include <string>
-
 #include "libscan/core/error.h"
-#include "libscan/reconstruct/support.h"
 #ifdef LIBSCAN_WITH_CGAL
 #include "libscan/reconstruct/advancing_front.h"
+#include "libscan/reconstruct/interpolating_surface.h"
 #endif
 
 namespace scan {
 
 #ifdef LIBSCAN_WITH_CGAL
-namespace {
-
-// Turns each component so that most of its area agrees with its vertices' normals.
-void follow_normals(const PointCloud& cloud, const std::vector<std::uint32_t>& point_of_vertex,
-                    Mesh& mesh) {
-  const std::vector<std::uint32_t> component = triangle_components(mesh);
-  std::vector<double> agreement;
-  for (std::size_t t = 0; t < component.size(); ++t) {
-    if (component[t] == agreement.size()) agreement.push_back(0);
-    const Eigen::Vector3d area = area_vector(mesh, mesh.triangles[t]);
-    for (const std::uint32_t v : mesh.triangles[t]) {
-      const Eigen::Vector3d& normal = cloud.normals[point_of_vertex[v]];
-      if (normal.allFinite()) agreement[component[t]] += area.dot(normal);
-    }
-  }
-  for (std::size_t t = 0; t < component.size(); ++t)
-    if (agreement[component[t]] < 0) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-}
-
-}  // namespace
-
 SurfaceResult delaunay(const PointCloud& cloud) {
-  check(cloud);
-  const Stopwatch watch;
-  std::vector<std::uint32_t> valid;
-  std::vector<Eigen::Vector3d> points;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i)
-    if (cloud.points[i].allFinite()) {
-      valid.push_back(i);
-      points.push_back(cloud.points[i]);
-    }
-  if (points.size() < 4)
-    throw Error(Trouble::input,
-                "cloud: " + std::to_string(points.size()) + " finite points, at least 4 needed");
-  const Mesh all = advancing_front(points);
-  if (all.empty())
-    throw Error(Trouble::computation, "delaunay: no triangle fits the points",
-                "points on a line or at one place span no surface");
-  SurfaceResult result;
-  std::vector<std::uint32_t> vertex_of;
-  result.surface = kept_triangles(all, std::vector<char>(all.triangles.size(), 1), vertex_of);
-  for (std::uint32_t& v : vertex_of) v = valid[v];
-  if (!cloud.normals.empty()) follow_normals(cloud, vertex_of, result.surface);
-  result.support_m.assign(result.surface.vertices.size(), 0.0);  // its vertices are data
-  result.unknowns = points.size();
-  result.stop = SolveStop::direct;
-  result.invalid_points = cloud.size() - valid.size();
-  result.cost.seconds = watch.seconds();
-  return result;
+  return interpolating_surface(cloud, advancing_front, "delaunay");
 }
 #else
 SurfaceResult delaunay(const PointCloud&) {

@@ -97,4 +97,10 @@ Mesh supported_components(const Mesh& mesh, std::span<const Eigen::Vector3d> poi
   return kept_triangles(mesh, keep, vertex_of);
 }
 
+void sort_triangles(Mesh& mesh) {
+  for (Triangle& t : mesh.triangles)
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  std::sort(mesh.triangles.begin(), mesh.triangles.end());
+}
+
 }  // namespace scan

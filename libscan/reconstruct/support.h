@@ -24,4 +24,8 @@ Mesh kept_triangles(const Mesh& mesh, const std::vector<char>& keep,
 Mesh supported_components(const Mesh& mesh, std::span<const Eigen::Vector3d> points,
                           std::span<const double> weights, double least_share);
 
+// Turns each triangle to begin with its lowest vertex and sorts them: for programs whose order of
+// triangles follows addresses in memory.
+void sort_triangles(Mesh& mesh);
+
 }  // namespace scan

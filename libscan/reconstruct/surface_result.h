@@ -3,6 +3,7 @@
 // What every reconstruction method returns.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +17,8 @@ std::string_view name_of(SolveStop stop);
 
 struct SurfaceResult {
   Mesh surface;
+  std::string method;             // set by reconstruct()
+  std::string method_reason;      // why this one
   std::vector<double> support_m;  // per vertex: distance to the nearest data point
   // Per vertex: one standard deviation across the surface, from the points' scatter and the
   // smoothing; of the surface beside the nearest point. Empty: the method does not know.
@@ -28,8 +31,10 @@ struct SurfaceResult {
   int iterations = 0;
   double relative_residual = 0;
   SolveStop stop = SolveStop::iteration_limit;
-  std::size_t invalid_points = 0;   // not finite or without a normal, left out
-  std::size_t outlying_points = 0;  // far from all others, left out
+  std::size_t invalid_points = 0;     // not finite or without a normal, left out
+  std::size_t outlying_points = 0;    // on no surface, left out
+  std::size_t estimated_normals = 0;  // were missing
+  std::size_t turned_normals = 0;     // pointed the wrong way
   Cost cost;
 };
 

@@ -84,16 +84,17 @@ TEST(JsonOutput, AlignmentIsWhatReadPosesReads) {
 
 TEST(JsonOutput, SurfacesTellTheirTopology) {
   SurfaceResult result;
+  result.method = "ssd";
   result.surface = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                     {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
   result.depth = 8;
-  const ordered_json object = surface_json("ssd", result);
+  const ordered_json object = surface_json(result);
   EXPECT_EQ(object["triangles"], 4);
   EXPECT_EQ(object["watertight"], true);
   EXPECT_EQ(object["genus"], 0);
   EXPECT_EQ(object["components"], 1);
   EXPECT_EQ(object["depth"], 8);
-  EXPECT_TRUE(surface_json("delaunay", {})["depth"].is_null());
+  EXPECT_TRUE(surface_json({})["depth"].is_null());
 }
 
 TEST(JsonOutput, ScansCountTheirRays) {

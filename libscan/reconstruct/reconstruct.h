@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Points to a surface, by any method.
+//
+// To add a method: 1. its own header and source; 2. its name in ReconstructMethod and in the list
+// of names in reconstruct.cpp; 3. its case in reconstruct(): the compiler names it; 4. its line in
+// the README. reconstruct_test.cpp and the hard cases walk the list.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libscan/core/progress.h"
+#include "libscan/reconstruct/moving_least_squares.h"
+#include "libscan/reconstruct/prepare_points.h"
+#include "libscan/reconstruct/range_fusion.h"
+#include "libscan/reconstruct/ssd.h"
+
+namespace scan {
+
+enum class ReconstructMethod { automatic, ssd, poisson, mls, range_fusion, delaunay, scale_space };
+
+// In the order of the enumeration, as they are written.
+const std::vector<std::string>& reconstruct_method_names();
+std::string_view name_of(ReconstructMethod method);
+
+struct ReconstructOptions {
+  ReconstructMethod method = ReconstructMethod::ssd;
+  SsdOptions ssd;
+  MlsOptions mls;
+  RangeFusionOptions range_fusion;
+};
+
+// Prepares the points (prepare_points.h) and calls the method; `automatic` ("auto") is one that
+// choose_method.h chooses. `viewpoints`: where the scanner of
+// each point stood, or empty. Throws what the method throws, and scan::Error (input) for fewer than
+// 4 finite points or for points at one place or on one line: they span no surface.
+SurfaceResult reconstruct(const PointCloud& cloud, std::span<const Eigen::Vector3d> viewpoints,
+                          const ReconstructOptions& options = {}, const Progress& progress = {});
+
+}  // namespace scan

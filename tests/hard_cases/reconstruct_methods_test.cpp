@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Hard input through every method: a right surface or a clear error, never a crash, never a NaN.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "libscan/core/error.h"
+#include "libscan/reconstruct/reconstruct.h"
+#include "tests/reconstruct/shapes.h"
+
+namespace scan {
+namespace {
+
+enum class Answer { surface, error, either };
+
+struct HardCase {
+  const char* name;
+  PointCloud cloud;
+  Answer answer;
+  // Distance of a place from the true surface; it is held to `tolerance_m` where data supports it.
+  std::function<double(const Eigen::Vector3d&)> distance_m;
+  double tolerance_m = 0;
+};
+
+double from_torus(const Eigen::Vector3d& x) {
+  return std::abs(std::hypot(std::hypot(x[0], x[1]) - 1, x[2]) - 0.35);
+}
+
+PointCloud moved(PointCloud cloud, double scale, const Eigen::Vector3d& offset) {
+  for (auto& x : cloud.points) x = scale * x + offset;
+  return cloud;
+}
+
+PointCloud plane_cloud(double height_m, double side) {
+  PointCloud cloud;
+  RandomStream random(7, 0, side > 0 ? 1 : 2);
+  for (int i = 0; i < 2000; ++i) {
+    const double x = random.uniform(), y = random.uniform();
+    cloud.points.push_back({x, y, height_m});
+    cloud.normals.push_back(side * Eigen::Vector3d::UnitZ());
+  }
+  return cloud;
+}
+
+PointCloud two_sheets() {
+  PointCloud cloud = plane_cloud(0.04, 1);
+  append(cloud, plane_cloud(0, -1));
+  return cloud;
+}
+
+PointCloud line_cloud() {
+  PointCloud cloud;
+  for (int i = 0; i < 200; ++i) cloud.points.push_back({0.01 * i, 0.02 * i, -0.01 * i});
+  return cloud;
+}
+
+PointCloud with_broken_entries(PointCloud cloud) {
+  for (std::size_t i = 0; i < 30; ++i) {
+    cloud.points[10 * i][i % 3] = std::numeric_limits<double>::quiet_NaN();
+    cloud.normals[10 * i + 1][i % 3] = std::numeric_limits<double>::infinity();
+    cloud.normals[10 * i + 2].setZero();
+    cloud.normals[10 * i + 3] *= 1e3;
+  }
+  return cloud;
+}
+
+PointCloud without_normals(PointCloud cloud) {
+  cloud.normals.clear();
+  return cloud;
+}
+
+// Samples of the torus lie 0.083 apart: surfaces within a third of that are right.
+std::vector<HardCase> hard_cases() {
+  constexpr double near = 0.083 / 3;
+  const PointCloud torus = torus_cloud(2000);
+  const Eigen::Vector3d far(1e7, -1e7, 1e7);
+  const auto from_plane = [](const Eigen::Vector3d& x) { return std::abs(x[2]); };
+  PointCloud one_place;
+  one_place.points.assign(100, Eigen::Vector3d(1, 2, 3));
+  one_place.normals.assign(100, Eigen::Vector3d::UnitX());
+  return {
+      {"plain", torus, Answer::surface, from_torus, near},
+      {"no normals", without_normals(torus), Answer::surface, from_torus, near},
+      {"broken entries", with_broken_entries(torus), Answer::surface, from_torus, near},
+      {"1e-6 m small", moved(torus, 1e-6, Eigen::Vector3d::Zero()), Answer::surface,
+       [](const Eigen::Vector3d& x) { return 1e-6 * from_torus(1e6 * x); }, 1e-6 * near},
+      {"1e6 m large", moved(torus, 1e6, Eigen::Vector3d::Zero()), Answer::surface,
+       [](const Eigen::Vector3d& x) { return 1e6 * from_torus(1e-6 * x); }, 1e6 * near},
+      {"1e7 m away", moved(torus, 1, far), Answer::surface,
+       [far](const Eigen::Vector3d& x) { return from_torus(x - far); }, near},
+      {"coplanar", plane_cloud(0, 1), Answer::either, from_plane, 0.01},
+      {"two sheets", two_sheets(), Answer::either,
+       [](const Eigen::Vector3d& x) { return std::min(std::abs(x[2]), std::abs(x[2] - 0.04)); },
+       0.03},
+      {"collinear", line_cloud(), Answer::error, {}, 0},
+      {"identical", one_place, Answer::error, {}, 0},
+      {"three points", subset(torus, std::vector<std::uint32_t>{1, 2, 3}), Answer::error, {}, 0},
+      {"empty", {}, Answer::error, {}, 0},
+  };
+}
+
+#ifdef LIBSCAN_WITH_CGAL
+constexpr bool with_cgal = true;
+#else
+constexpr bool with_cgal = false;
+#endif
+
+// Before each point, a tenth of the object away along the true normal: of the torus, or +-z.
+std::vector<Eigen::Vector3d> scanners_of(const PointCloud& cloud) {
+  const Bounds box = bounds_of(cloud.points);
+  const double size = box.isEmpty() ? 1 : box.sizes().maxCoeff();
+  const bool is_torus = !box.isEmpty() && std::abs(box.sizes()[2] / size - 0.26) < 0.02;
+  std::vector<Eigen::Vector3d> scanners;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    Eigen::Vector3d normal = i < cloud.normals.size() ? cloud.normals[i] : Eigen::Vector3d::UnitZ();
+    if (is_torus) {
+      const Eigen::Vector3d x = (cloud.points[i] - box.center()) * (2.7 / size);
+      const Eigen::Vector3d ring(x[0], x[1], 0);
+      normal = (x - ring.normalized()).normalized();
+    }
+    scanners.push_back(cloud.points[i] + 0.1 * size * normal);
+  }
+  return scanners;
+}
+
+std::optional<SurfaceResult> answer_of(const HardCase& hard, ReconstructMethod method) {
+  const std::vector<Eigen::Vector3d> scanners = scanners_of(hard.cloud);
+  try {
+    return reconstruct(hard.cloud, scanners, {.method = method, .ssd = {.depth = 6}});
+  } catch (const Error& error) {
+    EXPECT_GT(std::string(error.what()).size(), 10u);
+    EXPECT_TRUE(error.trouble() == Trouble::input || error.trouble() == Trouble::computation)
+        << error.what();
+    return std::nullopt;
+  }
+}
+
+class HardCases : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(HardCases, EndInARightSurfaceOrAClearError) {
+  const auto method = static_cast<ReconstructMethod>(GetParam());
+  if (!with_cgal &&
+      (method == ReconstructMethod::poisson || method == ReconstructMethod::delaunay ||
+       method == ReconstructMethod::scale_space))
+    GTEST_SKIP() << "built with LIBSCAN_WITH_CGAL=OFF";
+  for (const HardCase& hard : hard_cases()) {
+    SCOPED_TRACE(hard.name);
+    const std::optional<SurfaceResult> result = answer_of(hard, method);
+    if (hard.answer != Answer::either) {
+      EXPECT_EQ(result.has_value(), hard.answer == Answer::surface);
+    }
+    if (!result) continue;
+    EXPECT_FALSE(result->surface.empty());
+    std::size_t off = 0, supported = 0;
+    for (std::size_t v = 0; v < result->surface.vertices.size(); ++v) {
+      const Eigen::Vector3d& x = result->surface.vertices[v];
+      ASSERT_TRUE(x.allFinite());
+      if (result->support_m[v] > 2 * hard.tolerance_m) continue;
+      ++supported;
+      off += hard.distance_m(x) > hard.tolerance_m;
+    }
+    EXPECT_GT(supported, 0u);
+    EXPECT_LE(off, supported / 100);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, HardCases,
+                         testing::Range<std::size_t>(0, reconstruct_method_names().size()),
+                         [](const auto& index) {
+                           std::string name = reconstruct_method_names()[index.param];
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace scan

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/reconstruct/followed_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "libscan/core/error.h"
+
+namespace scan {
+namespace {
+
+const Eigen::Vector3d centre(0.5, 0.5, 0.5);
+
+double ball(const Eigen::Vector3d& u) {
+  return (u - centre).norm() - 0.3;
+}
+
+// From one seed all round the sphere; vertices are roots of a function that is nearly linear along
+// an edge of 1/64: four steps leave nothing.
+TEST(FollowedSurface, GoesAllRoundFromOneSeed) {
+  const std::vector<Eigen::Vector3d> seed{{0.8, 0.5, 0.5}};
+  const Mesh mesh = followed_surface(seed, 6, ball);
+  const EdgeCensus census = edge_census(mesh);
+  EXPECT_TRUE(census.watertight);
+  EXPECT_EQ(census.components, 1u);
+  EXPECT_EQ(census.genus, 0);
+  for (const auto& v : mesh.vertices) EXPECT_NEAR(ball(v), 0, 1e-5);
+  // Facets of 1/64 on a radius of 0.3 lose (1/64)^2 / (2 x 0.3^2), 0.14 %.
+  EXPECT_NEAR(volume_m3(mesh), 4 * std::numbers::pi / 3 * 0.027, 2e-3 * 0.113);
+}
+
+TEST(FollowedSurface, EndsWhereTheFieldIsUnknown) {
+  const std::vector<Eigen::Vector3d> seed{{0.8, 0.5, 0.5}};
+  const Mesh mesh = followed_surface(seed, 6, [](const Eigen::Vector3d& u) {
+    return u[0] > 0.5 ? ball(u) : std::numeric_limits<double>::quiet_NaN();
+  });
+  const EdgeCensus census = edge_census(mesh);
+  EXPECT_GT(census.boundary_edges, 0u);
+  EXPECT_EQ(census.non_manifold_edges, 0u);
+  EXPECT_EQ(census.misoriented_edges, 0u);
+  for (const auto& v : mesh.vertices) EXPECT_GT(v[0], 0.5);
+}
+
+// A field with cells of every kind: random corner signs, as a hash of the place.
+TEST(FollowedSurface, IsManifoldOnARandomField) {
+  std::vector<Eigen::Vector3d> seeds;
+  for (int i = 0; i < 512; ++i)
+    seeds.push_back(Eigen::Vector3d(i % 8 + 0.5, i / 8 % 8 + 0.5, i / 64 + 0.5) / 8);
+  const Mesh mesh = followed_surface(seeds, 3, [](const Eigen::Vector3d& u) {
+    if (u.minCoeff() <= 0 || u.maxCoeff() >= 1) return 1.0;
+    return std::sin(1e4 * u.dot(Eigen::Vector3d(1.3, 2.7, 3.1)));
+  });
+  const EdgeCensus census = edge_census(mesh);
+  EXPECT_TRUE(census.watertight);
+  EXPECT_EQ(census.non_manifold_vertices, 0u);
+}
+
+TEST(FollowedSurface, RefusesTooManyCells) {
+  const std::vector<Eigen::Vector3d> seed{{0.8, 0.5, 0.5}};
+  EXPECT_THROW(followed_surface(seed, 6, ball, 100), Error);
+}
+
+}  // namespace
+}  // namespace scan
