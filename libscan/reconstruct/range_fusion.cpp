@@ -146,7 +146,7 @@ SurfaceResult range_fusion(const PointCloud& cloud, std::span<const Eigen::Vecto
   const Samples samples = prepare_samples(cloud);
   const double cell = options.cell_spacings * typical_spacing(samples);
   const int depth = static_cast<int>(
-      std::clamp(std::ceil(-std::log2(cell)), 3.0, static_cast<double>(options.max_depth)));
+      std::clamp(std::floor(-std::log2(cell)), 3.0, static_cast<double>(options.max_depth)));
   if (progress) progress("rays", 0);
   std::vector<Eigen::Vector3d> from;
   const std::vector<Ray> rays = rays_of(samples, cloud, viewpoints, options, from);

@@ -11,7 +11,7 @@
 namespace scan {
 
 struct RangeFusionOptions {
-  double cell_spacings = 1;        // side of a cell over the typical spacing of samples
+  double cell_spacings = 1;        // least side of a cell over the typical spacing of samples
   double truncation_spacings = 3;  // reach of a point along its ray, at least
   double truncation_sigmas = 4;    // and over its sigma_m, where that is known
   int max_depth = 11;              // the finest cell is the box / 2^depth

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double gradient_share = 0.1;
 // Exact samples also give slopes, so that less than a spacing is of use.
-constexpr double least_spacings = 0.3;
+constexpr double least_spacings = 0.4;
 // A function that bends within the scatter passes through the samples one by one.
 constexpr double least_sigmas = 1.5;
 // A trial has only to tell which of two lengths is better.

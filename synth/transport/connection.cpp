@@ -250,8 +250,9 @@ std::uint64_t Connector::lit_bodies(const AnyEmitter& emitter) const {
   std::uint64_t lit = 0;
   for (std::size_t i = 0; i < surfaces_->bodies.size(); ++i) {
     const SmoothBody& body = surfaces_->bodies[i];
-    const bool is_lit = !std::isfinite(body.size_m) ||
-                        emitter.reaches(surfaces_->origin + body.centre, body.size_m / 2);
+    const bool is_bounded = body.size_m > 0;
+    const bool is_lit =
+        !is_bounded || emitter.reaches(surfaces_->origin + body.centre, body.size_m / 2);
     if (is_lit && body.is_clear) return Lamp::all_bodies;
     if (is_lit) lit |= Lamp::bit(static_cast<int>(i));
   }

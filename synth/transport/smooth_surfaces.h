@@ -35,7 +35,7 @@ struct SmoothBody {
   double extinction_per_m = 0;                       // inside
   PlacedShape shape;                                 // of an object that is no mesh
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of its bounds
-  double size_m = 0;                                 // their diagonal
+  double size_m = 0;                                 // their diagonal; 0: unbounded
   double thickness_m = 0;                            // least extent
   std::vector<int> sheet_of_triangle;                // of a mesh
   std::vector<int> flat_sheets;  // of a shape: box +x -x +y ..., cylinder +z -z, plane
