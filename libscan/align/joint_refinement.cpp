@@ -17,9 +17,11 @@
 namespace scan {
 namespace {
 
-// What n planes draw of the noise is off by sqrt(2 / n): from 200 planes on this is five sigma
-// above noise alone.
-constexpr double noise_multiple = 1.5;
+// Of errors alone A - N, which is the sum over the pairs of products of two normals' errors, has a
+// standard deviation of 2 N sqrt(neighbours / n) over n planes: each shares its errors with those
+// that its fit has in common with them. What lies five of these above noise is held by the surface.
+constexpr double sigmas_above_noise = 5;
+constexpr double neighbours = 16;         // PrepareOptions
 constexpr double rounding_share = 1e-10;  // as in observability.cpp
 constexpr int subspace_rounds = 30;
 // More weak motions than that are looked for scan by scan, the others held.
@@ -52,6 +54,19 @@ std::unique_ptr<Factor> damped_factor(const Sparse& a, double share) {
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
   return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
+}
+
+// Planes that each scan's forms were judged by: their normals are unit.
+std::vector<double> planes_of(std::span<const JointForm> forms, std::size_t scans) {
+  std::vector<double> planes(scans, 0);
+  for (const JointForm& form : forms)
+    for (const std::size_t scan : {form.source, form.target})
+      planes[scan] += form.apparent.bottomRightCorner<3, 3>().trace();
+  return planes;
+}
+
+double chance_excess(double planes) {
+  return 2 * sigmas_above_noise * std::sqrt(neighbours / std::max(planes, 1.0));
 }
 
 // The `count` least v^T A v / v^T G v, by inverse iteration on a subspace with Rayleigh-Ritz.
@@ -99,14 +114,18 @@ Eigen::VectorXd withheld(const Eigen::VectorXd& x, const Factor& factor, const J
 
 }  // namespace
 
-JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame) {
+JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame,
+                              double least_excess) {
   const JointSystem system(forms, frame);
   const auto none = JointBasis(6 * Eigen::Index(frame.centres.size()), 0);
   if (system.rows() == 0) return none;
   const Sparse apparent =
       matrix_of(system, system.sum([](const JointForm& form) { return form.apparent; }));
-  Sparse limit = noise_multiple *
-                 matrix_of(system, system.sum([](const JointForm& form) { return form.noise; }));
+  const std::vector<double> planes = planes_of(forms, frame.centres.size());
+  Sparse limit = matrix_of(system, system.sum([&](const JointForm& form) {
+    const double fewer = std::min(planes[form.source], planes[form.target]);
+    return Matrix6((1 + std::max(least_excess, chance_excess(fewer))) * form.noise);
+  }));
   const double least = rounding_share * std::max(apparent.diagonal().mean(), 1e-300);
   for (Eigen::Index i = 0; i < limit.rows(); ++i) limit.coeffRef(i, i) += least;
   const Factor factor(apparent - limit);

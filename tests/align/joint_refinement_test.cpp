@@ -111,6 +111,20 @@ TEST(JointWeakMotions, AreNoneWhereTheDataFixAll) {
   EXPECT_EQ(joint_weak_motions(r.forms, frame_of(4)).cols(), 0);
 }
 
+// A fifth above noise may be chance among a thousand planes, whose difference has a standard
+// deviation of 2 sqrt(16 / 1000) = 25 % of the noise, and is none among a hundred thousand, 2.5 %.
+TEST(JointWeakMotions, WhatRisesAboveNoiseCountsWhereManyPlanesSaySo) {
+  const auto weak_among = [](double planes, double least_excess) {
+    JointForm form{.source = 1, .target = 0};
+    form.noise(0, 0) = 1;
+    form.apparent.diagonal() << 1.2, planes, planes, planes / 3, planes / 3, planes / 3;
+    return joint_weak_motions(std::vector{form}, frame_of(2), least_excess).cols();
+  };
+  EXPECT_EQ(weak_among(1e3, 0), 1);
+  EXPECT_EQ(weak_among(1e5, 0), 0);
+  EXPECT_EQ(weak_among(1e5, 0.5), 1);  // more caution is asked for
+}
+
 // Scans 2 and 3 hold each other, but what ties them to 0 and 1 leaves one motion to noise: they may
 // go along it together, and only they.
 TEST(JointWeakMotions, FindWhatAGroupOfScansMayDoTogether) {

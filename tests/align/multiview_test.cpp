@@ -147,19 +147,18 @@ TEST(AlignScans, AnInterruptedCallGoesOnFromItsPairs) {
 }
 
 // The pair alone cannot see it, the loops do: scan 3's guess is so far off that its pairs settle
-// elsewhere, or not at all. No pair that sees much of one surface and is off by a tenth of the
-// object may be among the accepted.
+// elsewhere, or not at all. Two ends of a pair may each be off by the 2 mm of a turntable's scan;
+// what is accepted although the data leave a motion of it open says nothing along that motion.
 TEST(AlignScans, WrongPairsAreNamedAndDoNoHarm) {
   test::Turntable t = test::turntable(8, 0.001);
   RandomStream random(77, 0, 0);
   t.guesses[3] = test::random_pose(random, 0.6, 0.3) * t.guesses[3];
   const MultiviewResult result = align_scans(t.clouds, t.guesses);
   for (const ScanEdge& edge : result.edges) {
+    if (!edge.accepted || edge.stop == Stop::degenerate) continue;
     const Pose truth = t.truth[edge.target].inverse() * t.truth[edge.source];
-    const bool right = worst_m(t.clouds[edge.source], edge.target_from_source, truth) < 0.1;
-    if (edge.overlap > 0.3) {
-      EXPECT_TRUE(right || !edge.accepted) << edge.source << " " << edge.target;
-    }
+    EXPECT_LT(worst_m(t.clouds[edge.source], edge.target_from_source, truth), 4e-3)
+        << edge.source << " " << edge.target;
   }
   for (std::size_t i = 0; i < 8; ++i)
     if (i != 3) {
@@ -212,6 +211,23 @@ TEST(AlignScans, IdenticalScansComeToLieOnEachOther) {
   EXPECT_EQ(result.stop, Stop::converged);
   for (const ScanPose& scan : result.scans)  // there is no noise: to the iteration's end, 1e-6
     EXPECT_LT(worst_m(cloud, scan.world_from_scan, Pose::Identity()), 1e-5);
+}
+
+TEST(AlignScans, WhereNoPairOverlapsAllKeepTheirGuess) {
+  std::vector<PointCloud> clouds;
+  std::vector<Pose> guesses;
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    clouds.push_back(test::lump(500, 90 + i));
+    guesses.push_back(Pose(Eigen::Translation3d(10.0 * double(i), 0, 0)));
+  }
+  const MultiviewResult result = align_scans(clouds, guesses);
+  EXPECT_EQ(result.stop, Stop::no_correspondences);
+  EXPECT_TRUE(result.edges.empty());
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(result.scans[i].stop, Stop::no_correspondences);
+    EXPECT_EQ(result.scans[i].world_from_scan.matrix(), guesses[i].matrix());
+    EXPECT_FALSE(result.scans[i].covariance);
+  }
 }
 
 TEST(AlignScans, GuessesThatAreNoRotationsAreRefused) {
