@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "libscan/search/batch.h"
 #include "libscan/search/kd_tree.h"
 
 namespace scan {
@@ -114,21 +116,25 @@ bool has_grid(const Scan& scan) {
 }
 
 // around(i, widening, found) gives the neighbours of point i, itself first. Up to two times, a
-// neighbourhood that fixes no plane is doubled in reach.
+// neighbourhood that fixes no plane is doubled in reach. `order`: of the points, in which one finds
+// what the last one left in the processor's caches.
 template <class Around>
-void fit_planes(Scan& scan, std::span<const Eigen::Vector3d> viewpoints, Around&& around) {
+void fit_planes(Scan& scan, std::span<const Eigen::Vector3d> viewpoints,
+                std::span<const std::uint32_t> order, Around&& around) {
   PointCloud& cloud = scan.cloud;
   cloud.normals.assign(cloud.size(), Eigen::Vector3d::Zero());
-  parallel_for(cloud.size(), [&](std::size_t i) {
-    if (!cloud.points[i].allFinite()) return;
+  parallel_chunks(order.size(), queries_per_task, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> neighbours;
-    Eigen::Vector3d& normal = cloud.normals[i];
-    for (int widening = 1; widening <= 4 && normal.isZero(0); widening *= 2) {
-      around(static_cast<std::uint32_t>(i), widening, neighbours);
-      normal = plane_normal(cloud, neighbours);
+    for (const std::uint32_t i : order.subspan(begin, end - begin)) {
+      if (!cloud.points[i].allFinite()) continue;
+      Eigen::Vector3d& normal = cloud.normals[i];
+      for (int widening = 1; widening <= 4 && normal.isZero(0); widening *= 2) {
+        around(i, widening, neighbours);
+        normal = plane_normal(cloud, neighbours);
+      }
+      const Eigen::Vector3d viewpoint = viewpoints.empty() ? scan.viewpoint : viewpoints[i];
+      if (normal.dot(viewpoint - cloud.points[i]) < 0) normal = -normal;
     }
-    const Eigen::Vector3d viewpoint = viewpoints.empty() ? scan.viewpoint : viewpoints[i];
-    if (normal.dot(viewpoint - cloud.points[i]) < 0) normal = -normal;
   });
 }
 
@@ -141,23 +147,25 @@ void estimate_normals(Scan& scan, const NormalOptions& options,
     const GridNeighbours grid(scan);
     const int reach =
         std::max(1, static_cast<int>(std::ceil((std::sqrt(options.neighbours + 1.0) - 1) / 2)));
-    fit_planes(scan, viewpoints,
+    std::vector<std::uint32_t> order(scan.cloud.size());
+    std::iota(order.begin(), order.end(), 0u);
+    fit_planes(scan, viewpoints, order,
                [&](std::uint32_t i, int widening, std::vector<std::uint32_t>& found) {
                  grid.around(i, reach * widening, found);
                });
     return;
   }
   const KdTree tree(scan.cloud.points);
-  fit_planes(
-      scan, viewpoints, [&](std::uint32_t i, int widening, std::vector<std::uint32_t>& found) {
-        std::vector<Neighbour> near;
-        tree.k_nearest(scan.cloud.points[i],
-                       static_cast<std::size_t>(options.neighbours) * widening * widening + 1,
-                       near);
-        found.assign(1, i);
-        for (const Neighbour& one : near)
-          if (one.index != i) found.push_back(one.index);
-      });
+  fit_planes(scan, viewpoints, curve_order(scan.cloud.points),
+             [&](std::uint32_t i, int widening, std::vector<std::uint32_t>& found) {
+               std::vector<Neighbour> near;
+               tree.k_nearest(
+                   scan.cloud.points[i],
+                   static_cast<std::size_t>(options.neighbours) * widening * widening + 1, near);
+               found.assign(1, i);
+               for (const Neighbour& one : near)
+                 if (one.index != i) found.push_back(one.index);
+             });
 }
 
 }  // namespace scan

@@ -55,7 +55,9 @@ struct IcpOptions {
 // Throws scan::Error (usage) naming the option and its limit.
 void check(const IcpOptions& options);
 
-// Where an iteration began. Within one scale the objective never rises.
+// Where an iteration began. Within one scale the objective never rises. The last iteration ends
+// where the gradient vanishes: partners jump as the pose moves, so that below the noise the
+// objective is rough and where it is least depends on the start.
 struct IcpState {
   double scale_m = 0;       // of the loss
   double objective_m2 = 0;  // mean loss over the points of the source
@@ -72,8 +74,7 @@ struct IcpResult {
   // Of the overlap, in the target's frame, metres.
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   // Inverse covariance of the pose as a twist about `centre` (rad, m): from the scatter of the
-  // residuals, so that noise which neighbours share counts too. Zero along what the data leave
-  // open.
+  // residuals and how far along the surface they go together. Zero along what the data leave open.
   Matrix6 information = Matrix6::Zero();
   // "slide along ...", "turn about ..." in the target frame.
   std::vector<std::string> weak_directions;

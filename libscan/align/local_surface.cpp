@@ -21,7 +21,7 @@ constexpr std::size_t least_points_of_fit = 6;
 constexpr double line_variance_ratio = 0.04;
 constexpr double plane_variance_ratio = 1.0 / 3;
 constexpr std::size_t widest = 4;
-constexpr std::size_t most_spacings = 2048;
+constexpr std::size_t most_spacings = 512;
 
 // Central second moments of the neighbours, and those of every other one less those of the rest.
 struct Moments {

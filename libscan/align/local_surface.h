@@ -33,7 +33,7 @@ std::vector<LocalFit> local_fits(std::span<const Eigen::Vector3d> points, const 
 std::vector<LocalFit> local_fits(std::span<const Eigen::Vector3d> points, const KdTree& search,
                                  std::size_t neighbours);
 
-// Median distance to the nearest other point, metres; 0 for fewer than two. From up to 2048 points.
+// Median distance to the nearest other point, metres; 0 for fewer than two. From up to 512 points.
 double spacing_m(std::span<const Eigen::Vector3d> points, const AnySearch& search);
 double spacing_m(std::span<const Eigen::Vector3d> points, const KdTree& search);
 

@@ -46,6 +46,11 @@ class PairFinder {
   // Median residual of the pairs, metres; 0 for none.
   double median_residual_m(std::span<const Match> matches) const;
 
+  // How much of a small motion across the surface shows in the residuals: less than all, since
+  // among noisy points the nearest are those that did not seem to move. Between 0.1 and 1.
+  double shown_share(const Pose& pose, std::span<const Couple> couples,
+                     const WelschLoss& loss) const;
+
   // Mean loss over the sample, m^2; what is no pair costs as much as the farthest.
   double objective_m2(std::span<const Match> matches, const Weighing& weighing) const;
 

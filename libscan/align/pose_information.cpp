@@ -1,20 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "libscan/align/pose_step.h"
+#include "libscan/align/shared_noise.h"
 
 namespace scan {
 namespace {
-
-// Patches of the target's surface, enough for a scatter in six dimensions. What noise that
-// neighbours share carries across their borders falls with their width: it is found from a quarter
-// of them, twice as wide.
-constexpr std::size_t patches = 32;
 
 Vector6 row_of(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal) {
   Vector6 row;
@@ -74,59 +69,38 @@ TwistBasis rest_of(const TwistBasis& weak) {
   return q.rightCols(6 - weak.cols());
 }
 
-// The scatter of the pulls' sums over patches of equal counts along a curve over the target. The
-// pose has followed each patch by the share of the curvature that is its own: what it leaves of the
-// patch's sum is smaller by (1 - share), which is put right (Bell and McCaffrey 2002, CR2, to first
-// order in what patches differ).
-Matrix6 scatter_over(std::span<const Pull> pulls, std::size_t count, const Matrix6& inverse) {
-  Matrix6 scatter = Matrix6::Zero();
-  for (std::size_t c = 0; c < count; ++c) {
-    Pull sum;
-    const std::size_t begin = c * pulls.size() / count, end = (c + 1) * pulls.size() / count;
-    for (const Pull& pull : pulls.subspan(begin, end - begin)) {
-      sum.gradient += pull.gradient;
-      sum.curvature += pull.curvature;
-    }
-    const Matrix6 left = Matrix6::Identity() - sum.curvature * inverse;
-    const Vector6 whole = left.partialPivLu().solve(sum.gradient);
-    scatter += 0.5 * (whole * sum.gradient.transpose() + sum.gradient * whole.transpose());
-  }
-  return scatter;
-}
-
 }  // namespace
 
 Matrix6 pose_information(const PairFinder& finder, const Pose& pose,
                          std::span<const Couple> couples, const WelschLoss& loss,
                          const DataFrame& frame, const TwistBasis& weak) {
   if (weak.cols() == 6) return Matrix6::Zero();
-  std::vector<Couple> ordered(couples.begin(), couples.end());
-  std::stable_sort(ordered.begin(), ordered.end(),
-                   [](const Couple& a, const Couple& b) { return a.target < b.target; });
-  std::vector<Pull> pulls;
-  pulls.reserve(ordered.size());
-  Matrix6 curvature = Matrix6::Zero();
-  for (const Couple& couple : ordered) {
-    pulls.push_back(pull_of(finder, pose, couple, loss, frame));
-    curvature += pulls.back().curvature;
+  std::vector<Vector6> pulls;
+  std::vector<Eigen::Vector3d> at;
+  Matrix6 curvature = Matrix6::Zero(), scatter = Matrix6::Zero();
+  for (const Couple& couple : couples) {
+    const Pull pull = pull_of(finder, pose, couple, loss, frame);
+    pulls.push_back(pull.gradient);
+    at.push_back(finder.target().points[couple.target]);
+    curvature += pull.curvature;
+    scatter += pull.gradient * pull.gradient.transpose();
   }
-  const TwistBasis rest = rest_of(weak);
-  const Eigen::MatrixXd b = rest.transpose() * curvature * rest;
-  const Eigen::LLT<Eigen::MatrixXd> factor(b);
-  if (factor.info() != Eigen::Success) return Matrix6::Zero();  // nothing is held
-  const Matrix6 inverse = rest * factor.solve(Eigen::MatrixXd(rest.transpose()));
-  Matrix6 scatter = scatter_over(pulls, patches, inverse);
-  const double narrow = (inverse * scatter).trace();
-  const double wide = (inverse * scatter_over(pulls, patches / 4, inverse)).trace();
-  if (narrow > 0) scatter *= std::max(1.0, 2 * wide / narrow - 1);
   // Residuals cannot be known better than the coordinates are rounded.
   const double rounding =
       1e-15 * (finder.target().origin.norm() + finder.target().radius_m) / frame.size_m;
   scatter += std::max(rounding * rounding, 1e-300) * curvature.trace() * Matrix6::Identity();
-  // The inverse of a scatter from n sums in d dimensions is too large by n / (n - d - 1).
-  const double share = 1 - (static_cast<double>(rest.cols()) + 1) / patches;
-  const Eigen::MatrixXd m = rest.transpose() * scatter * rest;
-  Matrix6 information = share * rest * (b * m.ldlt().solve(b)) * rest.transpose();
+  curvature *= finder.shown_share(pose, couples, loss);
+  const TwistBasis rest = rest_of(weak);
+  const Eigen::MatrixXd b = rest.transpose() * curvature * rest;
+  const Eigen::LLT<Eigen::MatrixXd> held(b), spread(rest.transpose() * scatter * rest);
+  if (held.info() != Eigen::Success) return Matrix6::Zero();
+  for (Vector6& pull : pulls) {
+    const Eigen::VectorXd white = spread.matrixL().solve(rest.transpose() * pull);
+    pull.setZero();
+    pull.head(rest.cols()) = white;
+  }
+  const double sharing = noise_sharing(pulls, at, static_cast<int>(rest.cols()));
+  Matrix6 information = rest * (b * spread.solve(b)) * rest.transpose() / sharing;
   information.rightCols<3>() /= frame.size_m;
   information.bottomRows<3>() /= frame.size_m;
   return 0.5 * (information + information.transpose());

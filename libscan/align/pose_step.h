@@ -63,11 +63,12 @@ Pull pull_of(const PairFinder& finder, const Pose& pose, const Couple& couple,
              const WelschLoss& loss, const DataFrame& frame);
 
 // Inverse covariance of the pose that solves the pairs' equations, as a twist about the frame's
-// centre in (rad, m), zero along `weak`: B^-1 M B^-1 with the mean curvature B and the scatter M of
-// the pairs' gradients (Huber 1967). Gradients are summed over patches of the surface first, whose
-// sums are nearly independent, so that noise shared by neighbours, points that several pairs have
-// in common and errors of the normals all count (Liang and Zeger 1986). B is taken between the
-// normals of both scans, whose noise is independent and so adds nothing to it.
+// centre in (rad, m), zero along `weak`: B^-1 M B^-1 with the curvature B of the loss and the
+// scatter M of the pairs' gradients (Huber 1967). M is the sum of the gradients' squares, times
+// what noise that neighbours share, points that several pairs have in common and errors of the
+// normals add to the scatter of sums (shared_noise.h). B is taken between the normals of both
+// scans, whose noise is independent and so adds nothing to it, and is less by what the partners'
+// choice hides of a motion (PairFinder::shown_share).
 Matrix6 pose_information(const PairFinder& finder, const Pose& pose,
                          std::span<const Couple> couples, const WelschLoss& loss,
                          const DataFrame& frame, const TwistBasis& weak);

@@ -109,7 +109,7 @@ TEST(Icp, TheObjectiveNeverRises) {
   RandomStream random(20, 0, 0);
   for (const IcpMethod method : icp_methods) {
     std::size_t compared = 0;
-    for (const double off : {0.05, 0.3, 0.6, 1.0, 1.5}) {
+    for (const double off : {0.05, 0.3, 0.6, 1.0, 1.2, 1.5}) {
       const IcpResult result = icp(source, target, test::random_pose(random, off, off),
                                    {.method = method, .max_normal_angle_rad = std::numbers::pi});
       for (std::size_t i = 1; i < result.history.size(); ++i) {

@@ -19,12 +19,14 @@ enum class ScannerNoise {
   phase_camera,  // grows with the inverse of the cosine of incidence
   laser_line,    // half of it shared along each line, over some points
   correlated,    // most of it shared with neighbours to all sides
+  quantised,     // depths rounded to steps of four sigma
 };
-inline constexpr std::array scanner_noises = {ScannerNoise::lidar, ScannerNoise::stereo,
+inline constexpr std::array scanner_noises = {ScannerNoise::lidar,        ScannerNoise::stereo,
                                               ScannerNoise::phase_camera, ScannerNoise::laser_line,
-                                              ScannerNoise::correlated};
+                                              ScannerNoise::correlated,   ScannerNoise::quantised};
 inline const char* name_of(ScannerNoise noise) {
-  constexpr const char* names[] = {"lidar", "stereo", "phase camera", "laser line", "correlated"};
+  constexpr const char* names[] = {"lidar",      "stereo",     "phase camera",
+                                   "laser line", "correlated", "quantised"};
   return names[static_cast<int>(noise)];
 }
 
@@ -82,6 +84,17 @@ inline std::vector<double> shared_noise(int side, int rows, int columns, std::ui
   return shared;
 }
 
+// How far along the ray its depth, along an axis of the scan's own that leans by some degrees, is
+// from the nearest step.
+inline double to_step_m(const Vector3d& arm, const Vector3d& ray, double step_m, std::uint64_t seed,
+                        std::uint32_t scan) {
+  RandomStream random(seed, 20 + scan, 0);
+  const double x = 0.1 * random.normal(), y = 0.1 * random.normal(), start = random.uniform();
+  const Vector3d axis = Vector3d(x, y, -1).normalized();
+  const double steps = arm.dot(axis) / step_m + start;
+  return (std::round(steps) - steps) * step_m / ray.dot(axis);
+}
+
 // In the frame of the surface: a grid of side x side rays, shaken by a third of a step, over the
 // square of 2 m about `middle`, from 3 m above it.
 inline PointCloud simulated_scan(const WavySurface& surface, ScannerNoise kind, double sigma_m,
@@ -112,6 +125,9 @@ inline PointCloud simulated_scan(const WavySurface& surface, ScannerNoise kind, 
       const double error_m = sigma * (std::sqrt(1 - shared_share) * own +
                                       std::sqrt(shared_share) * shared[std::size_t(ray_index)]);
       cloud.points.push_back(point + error_m * ray);
+      if (kind == ScannerNoise::quantised)
+        cloud.points.back() +=
+            to_step_m(cloud.points.back() - eye, ray, 4 * sigma_m, seed, scan) * ray;
     }
   return cloud;
 }

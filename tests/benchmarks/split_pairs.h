@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs of clouds whose relative pose is known exactly, made from real scans: the points of one
 // scan are shared out at random between two that have none in common, opposite ends are cut off,
-// noise is added, both are thinned alike, and one is moved.
+// noise is added, and one is moved.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,6 @@
 #include "libscan/io/image_file.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
-#include "libscan/search/voxel_grid.h"
 
 namespace scan::test {
 
@@ -24,6 +23,7 @@ struct PairCase {
   std::string name;
   PointCloud source, target;                                // points alone
   Pose truth = Pose::Identity(), guess = Pose::Identity();  // target_from_source
+  double thin_m = 0;                                        // voxels to thin both by; 0: not at all
   double reach_m = 0;                                       // greatest pair distance for the peers
   double step_m = 0;                                        // of the peers' NDT grid
 };
@@ -74,14 +74,14 @@ inline PointCloud half_of(const PointCloud& cloud, bool first, const Splitting& 
     const double a = random.normal(), b = random.normal(), c = random.normal();
     half.points.push_back(x + how.noise_m * Eigen::Vector3d(a, b, c));
   }
-  return how.thin_m > 0 ? voxel_grid(half, how.thin_m) : half;
+  return half;
 }
 
 // The guess is off by the given turn about the source's centroid, and by the shift.
 inline PairCase split_pair(const std::string& name, const PointCloud& cloud, const Splitting& how,
                            std::uint64_t seed) {
   RandomStream random(seed, 1, 0);
-  PairCase made{.name = name};
+  PairCase made{.name = name, .thin_m = how.thin_m};
   made.source = half_of(cloud, true, how, seed);
   made.truth = random_motion(random, 25, 0);
   made.target = transformed(made.truth, half_of(cloud, false, how, seed));

@@ -107,7 +107,7 @@ TEST_P(HardInput, RepeatedPointsChangeNothing) {
   const IcpResult a = icp(p.source, p.target, p.guess, options());
   const IcpResult b = icp(ten.source, ten.target, p.guess, options());
   EXPECT_EQ(b.stop, a.stop);
-  // The gate's median is taken from another sample of up to 2,048 points: a few pairs may differ.
+  // The gate's median is taken from another sample of up to 512 points: a few pairs may differ.
   EXPECT_LT((a.target_from_source.matrix() - b.target_from_source.matrix()).norm(), 1e-3);
 }
 

@@ -95,6 +95,31 @@ TEST(AlignInput, OneScanIsAlignedWithItself) {
   EXPECT_TRUE(std::filesystem::exists(folder / "out/aligned.ply"));
 }
 
+// There is no noise: to the iteration's end, a millionth of the size of 2 m.
+TEST(AlignInput, IdenticalScansComeToLieOnEachOther) {
+  const Folder folder;
+  std::vector<std::string> files = spill_lumps(folder, 1, 2000);
+  for (int i = 1; i < 4; ++i) {
+    files.push_back((folder / (std::to_string(i) + ".ply")).string());
+    std::filesystem::copy_file(files[0], files.back());
+  }
+  spill(folder / "off.conf",
+        "bmesh 0.ply 0 0 0 0 0 0 1\nbmesh 1.ply 0.03 0 0 0 0 0 1\n"
+        "bmesh 2.ply 0 -0.02 0.02 0 0 0 1\nbmesh 3.ply 0 0 0 0 0 0.01 0.99995\n");
+  const Outcome outcome =
+      align(files, {(folder / "out").string(), "--init", (folder / "off.conf").string()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("its size is"), std::string::npos) << outcome.err;
+  std::istringstream poses(slurp(folder / "out/poses.tum"));
+  std::string comment;
+  std::getline(poses, comment);
+  int found = 0;
+  for (double index, x, y, z, qx, qy, qz, qw; poses >> index >> x >> y >> z >> qx >> qy >> qz >> qw;
+       ++found)
+    EXPECT_LT(std::hypot(std::hypot(x, y, z), std::hypot(qx, qy, qz)), 1e-5) << index;
+  EXPECT_EQ(found, 4);
+}
+
 // Starts the program and sends it Ctrl-C once it has opened its folder, before its many pairs can
 // be done.
 int interrupt(const std::vector<std::string>& files, const Folder& folder) {

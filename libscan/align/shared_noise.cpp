@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/align/shared_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "libscan/core/shape.h"
+
+namespace scan {
+namespace {
+
+// Patches of two widths, one twice the other. Of fewer points some narrow ones would be all but
+// empty: then the wide ones tell alone.
+constexpr std::size_t wide_patches = 64, narrow_patches = 4 * wide_patches;
+constexpr std::size_t least_points_of_patch = 4;
+
+class Patches {
+ public:
+  Patches(std::span<const Vector6> pulls, std::span<const Eigen::Vector3d> at, std::size_t count)
+      : pulls_(pulls), at_(at), count_(count), order_(pulls.size()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    halve(0, count);
+  }
+
+  // The ratio over `count` patches, a power of two of which each is a run of the finest. The
+  // estimate has followed each patch by its share P of the variance, so that tr P^2 is missing.
+  double ratio(std::size_t count, int dimensions) const {
+    double squares = 0, followed = 0;
+    for (std::size_t patch = 0; patch < count; ++patch) {
+      Vector6 sum = Vector6::Zero();
+      Matrix6 share = Matrix6::Zero();
+      const std::size_t step = count_ / count;
+      for (std::size_t k = begin_of(patch * step); k < begin_of((patch + 1) * step); ++k) {
+        const Vector6& pull = pulls_[order_[k]];
+        sum += pull;
+        share.noalias() += pull * pull.transpose();
+      }
+      squares += sum.squaredNorm();
+      followed += share.squaredNorm();
+    }
+    return squares / std::max(dimensions - followed, 0.5 * dimensions);
+  }
+
+ private:
+  std::size_t begin_of(std::size_t patch) const { return patch * order_.size() / count_; }
+
+  // Cuts the patches [first, last) in halves along the longest side of their points, over and over.
+  void halve(std::size_t first, std::size_t last) {
+    if (last - first < 2) return;
+    const std::size_t middle = (first + last) / 2;
+    const auto place = [&](std::size_t patch) {
+      return order_.begin() + static_cast<std::ptrdiff_t>(begin_of(patch));
+    };
+    Eigen::AlignedBox3d box;
+    for (auto k = place(first); k != place(last); ++k) box.extend(at_[*k]);
+    Eigen::Index axis = 0;
+    box.sizes().maxCoeff(&axis);
+    std::nth_element(place(first), place(middle), place(last),
+                     [&](std::uint32_t a, std::uint32_t b) {
+                       const double x = at_[a][axis], y = at_[b][axis];
+                       return x < y || (x == y && a < b);
+                     });
+    halve(first, middle);
+    halve(middle, last);
+  }
+
+  std::span<const Vector6> pulls_;
+  std::span<const Eigen::Vector3d> at_;
+  std::size_t count_;
+  std::vector<std::uint32_t> order_;
+};
+
+}  // namespace
+
+double noise_sharing(std::span<const Vector6> pulls, std::span<const Eigen::Vector3d> at,
+                     int dimensions) {
+  const Patches patches(pulls, at, narrow_patches);
+  double root = std::sqrt(patches.ratio(wide_patches, dimensions));
+  double variance = 2;  // times the patches' number, of the square of a sum of normal noise
+  if (pulls.size() >= least_points_of_patch * narrow_patches) {
+    root = std::max(0.5 * root, 2 * root - std::sqrt(patches.ratio(narrow_patches, dimensions)));
+    // Roots vary by half: the wide by 1 / 2, the narrow by 1 / 8, which is in the wide, too; the
+    // root by 4 / 2 + 1 / 8 - 4 / 8, and its square by four times that.
+    variance = 6.5;
+  }
+  // The mean of the inverse is above the inverse of the mean by the variance.
+  return std::max(1.0, root * root * (1 + variance / wide_patches));
+}
+
+}  // namespace scan

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// H21: the memory of an alignment grows with its points and is given back.
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <fstream>
+
+#include "libscan/core/parallel.h"
+#include "tests/align/icp_methods.h"
+#include "tests/align/test_clouds.h"
+
+namespace scan {
+namespace {
+
+// A line of /proc/self/status, bytes.
+double status_bytes(const std::string& name) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (word == name + ":") {
+      double kib = 0;
+      status >> kib;
+      return 1024 * kib;
+    }
+  return -1;
+}
+
+// What a call takes beyond what was there before.
+double peak_bytes(std::size_t points, IcpMethod method) {
+  const auto [source, target] = test::split(test::bumpy_surface(points, 1), 2);
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << 5;  // the peak starts anew
+  const double before = status_bytes("VmRSS");
+  icp(source, target, Pose::Identity(), {.method = method, .max_iterations = 5});
+  return status_bytes("VmHWM") - before;
+}
+
+// Four times the points: vectors that double as they grow do so alike, and what does not grow with
+// the points only lowers the larger peak's share. The allocator has up to some MiB of its own to
+// hand out, less of it left the second time; a part that grew with the square would take 16 times
+// as much.
+TEST(AlignMemory, IsLinearInThePoints) {
+  const ThreadLimit limit(2);
+  for (const IcpMethod method : {IcpMethod::symmetric, IcpMethod::plane_to_plane}) {
+    const double few = peak_bytes(40'000, method), many = peak_bytes(160'000, method);
+    if (few <= 0) GTEST_SKIP() << "this kernel does not let a process reset its peak memory";
+    EXPECT_LT(many, 4 * few + 8 * 0x1p20) << name_of(method);
+    // Points, normals, fits, search and pairs, for each of both clouds' points.
+    EXPECT_LT(many, 160'000 * 400.0) << name_of(method);
+  }
+}
+
+// A leak of one byte for each of the 100 points would show as 100 kB.
+TEST(AlignMemory, IsFlatOverManyCalls) {
+  const ThreadLimit limit(1);
+  const auto [source, target] = test::split(test::bumpy_surface(200, 1), 2);
+  const auto call = [&](int times) {
+    for (int i = 0; i < times; ++i) icp(source, target, Pose::Identity(), {.max_iterations = 5});
+    return mallinfo2().uordblks;
+  };
+  const std::size_t after_ten = call(10);
+  EXPECT_LT(call(1000), after_ten + 10'000);
+}
+
+}  // namespace
+}  // namespace scan
