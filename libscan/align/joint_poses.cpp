@@ -27,8 +27,9 @@ constexpr double settled_share = 0.99;
 // noise may feign two thirds stand as in the guesses; from there the pairs of all scans together
 // decide.
 constexpr double doubtful_excess = 0.5;
-// Patches of the surface whose noise counts as independent: so many to a scan, as for one pair.
-constexpr double patches = 128;
+// Places of the surface at which pulls are added up before their scatter: so many to a scan, enough
+// for shared_noise.h to tell from their own what neighbours share.
+constexpr double places = 2048;
 
 class Refinement {
  public:
@@ -104,7 +105,7 @@ JointFrame Refinement::frame() const {
 bool Refinement::find_pairs(std::vector<JointDetail>* details) {
   std::vector<JointForm> all(couples_.size());
   std::vector<JointDetail> more(details ? couples_.size() : 0);
-  const double patch_m = out_.size_m * std::sqrt(4 * std::numbers::pi / patches);
+  const double patch_m = out_.size_m * std::sqrt(4 * std::numbers::pi / places);
   parallel_for(
       couples_.size(),
       [&](std::size_t k) {

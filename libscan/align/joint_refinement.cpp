@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "libscan/align/joint_system.h"
+#include "libscan/align/shared_noise.h"
 #include "libscan/core/error.h"
 
 namespace scan {
@@ -112,6 +113,40 @@ Eigen::VectorXd withheld(const Eigen::VectorXd& x, const Factor& factor, const J
   return x - reply * (weak.transpose() * reply).ldlt().solve(weak.transpose() * x);
 }
 
+// What each scan's noise shared among places adds to its scatter (shared_noise.h), along all that
+// is not weak.
+std::vector<double> noise_shares(const PlacePulls& places, std::size_t scans,
+                                 const JointBasis& weak) {
+  std::vector<std::vector<Vector6>> pulls(scans);
+  std::vector<std::vector<Eigen::Vector3d>> at(scans);
+  for (const auto& [place, all] : places)
+    for (const auto& [scan, pull] : all) {
+      pulls[scan].push_back(pull);
+      at[scan].emplace_back(double(place[0]), double(place[1]), double(place[2]));
+    }
+  std::vector<double> shares(scans, 1);
+  for (std::size_t i = 0; i < scans; ++i) {
+    Matrix6 scatter = Matrix6::Zero();
+    const Matrix6 rest = complement_projector(weak_motions_of(i, weak));
+    for (Vector6& pull : pulls[i]) {
+      pull = (rest * pull).eval();
+      scatter += pull * pull.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scatter);
+    Vector6 roots = Vector6::Zero();
+    for (int k = 0; k < 6; ++k)
+      if (const double variance = solver.eigenvalues()[k];
+          variance > rounding_share * solver.eigenvalues()[5])
+        roots[k] = 1 / std::sqrt(variance);
+    const auto dimensions = static_cast<int>((roots.array() > 0).count());
+    if (dimensions == 0) continue;
+    const Matrix6 whitening = roots.asDiagonal() * solver.eigenvectors().transpose();
+    for (Vector6& pull : pulls[i]) pull = (whitening * pull).eval();
+    shares[i] = noise_sharing(pulls[i], at[i], dimensions);
+  }
+  return shares;
+}
+
 }  // namespace
 
 JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame,
@@ -187,7 +222,9 @@ std::vector<std::optional<Matrix6>> joint_covariances(std::span<const JointForm>
   const JointSystem system(forms, frame);
   if (system.rows() == 0) return covariances;
   const auto factor = damped_factor(matrix_of(system, system.sum_of(details)), rounding_share);
-  const Sparse scatter = matrix_of(system, system.scatter(details));
+  const PlacePulls places = system.pulls_by_place(details);
+  const Sparse scatter =
+      matrix_of(system, system.scatter(places, noise_shares(places, covariances.size(), weak)));
   const Eigen::MatrixXd open = system.reduced(weak);
   Matrix6 units = Matrix6::Identity();
   units.bottomRightCorner<3, 3>() *= frame.size_m;

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "libscan/align/joint_system.h"
+#include "libscan/align/shared_noise.h"
 #include "libscan/core/random.h"
 
 namespace scan {
@@ -151,18 +153,25 @@ TEST(JointWeakMotions, FindWhatAGroupOfScansMayDoTogether) {
   }
 }
 
-// One scan against the anchor, pulls known: B^-1 M B^-1.
+// One scan against the anchor, pulls known: B^-1 M B^-1 times what the whitened pulls share.
 TEST(JointCovariances, AreTheSandwichOfCurvatureAndScatter) {
   RandomStream random(4, 0, 0);
   const std::vector<JointForm> forms = {random_form(1, 0, random), random_form(0, 1, random)};
   std::vector<JointDetail> details(2);
   Matrix6 scatter = Matrix6::Zero();
+  std::vector<Vector6> pulls;
+  std::vector<Vector3d> at;
   for (std::int64_t place = 0; place < 20; ++place) {
     const Vector6 there = random_row(random), back = random_row(random);
     details[0].pulls.push_back({{place, 0, 0}, there});
     details[1].pulls.push_back({{place, 0, 0}, back});
-    scatter += (there - back) * (there - back).transpose();  // scan 1 is the second's target
+    pulls.push_back(there - back);  // scan 1 is the second's target
+    at.emplace_back(double(place), 0, 0);
+    scatter += pulls.back() * pulls.back().transpose();
   }
+  const Eigen::LLT<Matrix6> spread(scatter);
+  for (Vector6& pull : pulls) pull = spread.matrixL().solve(pull).eval();
+  const double share = noise_sharing(pulls, at, 6);
   for (std::size_t k = 0; k < 2; ++k) details[k].curvature = forms[k].a;
   const Matrix6 inverse = (forms[0].a + forms[1].a).inverse();
   JointFrame frame = frame_of(2);
@@ -173,7 +182,7 @@ TEST(JointCovariances, AreTheSandwichOfCurvatureAndScatter) {
   ASSERT_TRUE(covariances[1]);
   Matrix6 units = Matrix6::Identity();
   units.bottomRightCorner<3, 3>() *= 3;
-  const Matrix6 expected = units * inverse * scatter * inverse * units;
+  const Matrix6 expected = share * units * inverse * scatter * inverse * units;
   EXPECT_LT((*covariances[1] - expected).norm(), 1e-7 * expected.norm());
   EXPECT_EQ(*covariances[0], Matrix6::Zero());
 }

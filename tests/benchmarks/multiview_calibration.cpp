@@ -16,7 +16,7 @@ namespace scan::test {
 namespace {
 
 struct Set {
-  double error2 = 0, turns2_rad2 = 0;  // mean over the scans that have a covariance
+  double error2 = 0, turns2_rad2 = 0, said2_rad2 = 0;  // mean over the scans that have a covariance
   int scans = 0, weak = 0;
 };
 
@@ -34,6 +34,7 @@ Set align_set(ScannerNoise noise, int side, std::uint64_t seed) {
     const double turn_rad = rotation_distance_rad(result.scans[i].world_from_scan, should);
     set.error2 += *error2 / 6;
     set.turns2_rad2 += turn_rad * turn_rad;
+    set.said2_rad2 += result.scans[i].covariance->topLeftCorner<3, 3>().trace();
     ++set.scans;
   }
   return set;
@@ -44,11 +45,12 @@ void calibrate(ScannerNoise noise, int side, std::size_t count) {
   std::vector<Set> sets(count);
   parallel_for(
       count, [&](std::size_t k) { sets[k] = align_set(noise, side, k + 1); }, 1);
-  double sum = 0, squares = 0, used = 0, turns2 = 0, scans = 0, weak = 0;
+  double sum = 0, squares = 0, used = 0, turns2 = 0, said2 = 0, scans = 0, weak = 0;
   for (const Set& set : sets) {
     weak += set.weak;
     scans += set.scans;
     turns2 += set.turns2_rad2;
+    said2 += set.said2_rad2;
     if (set.scans == 0) continue;
     const double mean = set.error2 / set.scans;
     sum += mean;
@@ -56,8 +58,9 @@ void calibrate(ScannerNoise noise, int side, std::size_t count) {
     ++used;
   }
   const double mean = sum / used, sigma = std::sqrt((squares / used - mean * mean) / used);
-  std::printf("%-13s %6.0f %6.0f  %7.3f +- %.3f  %10.4f\n", name_of(noise), scans, weak, mean,
-              sigma, deg_from_rad(std::sqrt(turns2 / scans)));
+  std::printf("%-13s %6.0f %6.0f  %7.3f +- %.3f  %10.4f  %10.4f\n", name_of(noise), scans, weak,
+              mean, sigma, deg_from_rad(std::sqrt(turns2 / scans)),
+              deg_from_rad(std::sqrt(said2 / scans)));
   std::fflush(stdout);
 }
 
@@ -68,7 +71,7 @@ int main(int argc, char** argv) {
   using namespace scan;
   const std::size_t sets = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 200;
   const int side = argc > 2 ? std::atoi(argv[2]) : 80;
-  std::printf("noise          scans   weak  e^T C^-1 e / 6    rms turn deg\n");
+  std::printf("noise          scans   weak  e^T C^-1 e / 6    rms turn deg   as said deg\n");
   for (const test::ScannerNoise noise : test::scanner_noises) test::calibrate(noise, side, sets);
   return 0;
 }
