@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/align/joint_refinement.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -106,12 +107,68 @@ Eigen::MatrixXd own_motions(const Sparse& a, const Sparse& g) {
   return all;
 }
 
-// Removes what of x lies along `weak`, at the least cost in x^T A x.
-Eigen::VectorXd withheld(const Eigen::VectorXd& x, const Factor& factor, const JointBasis& weak) {
-  if (weak.cols() == 0) return x;
-  const Eigen::MatrixXd reply = factor.solve(weak);
-  return x - reply * (weak.transpose() * reply).ldlt().solve(weak.transpose() * x);
+// Whether each column is a motion of one scan.
+bool each_of_one_scan(const Eigen::MatrixXd& columns) {
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    Eigen::Index first = 0;
+    columns.col(k).cwiseAbs().maxCoeff(&first);
+    const double own = columns.col(k).segment<6>(first - first % 6).squaredNorm();
+    if (own < (1 - rounding_share) * columns.col(k).squaredNorm()) return false;
+  }
+  return true;
 }
+
+// I - W W^T, block by block.
+Sparse block_projector(const Eigen::MatrixXd& weak) {
+  JointEntries entries;
+  for (Eigen::Index row = 0; row < weak.rows(); row += 6) {
+    const auto own = weak.middleRows<6>(row);
+    const Matrix6 block = Matrix6::Identity() - own * own.transpose();
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) entries.push_back({int(row) + i, int(row) + j, block(i, j)});
+  }
+  Sparse projector(weak.rows(), weak.rows());
+  projector.setFromTriplets(entries.begin(), entries.end());
+  return projector;
+}
+
+// Solutions of A x = b in least squares with no part along orthonormal `weak` motions. Where each
+// is of one scan, with P = I - W W^T these are (P A P + s W W^T)^-1 P b for any s, as sparse as A;
+// few of many scans are taken out of A^-1 b.
+class WithholdingSolver {
+ public:
+  WithholdingSolver(const Sparse& a, Eigen::MatrixXd weak) : weak_(std::move(weak)) {
+    blocks_ = weak_.cols() > 0 && each_of_one_scan(weak_);
+    if (!blocks_) {
+      factor_ = damped_factor(a, rounding_share);
+      if (weak_.cols() == 0) return;
+      reply_ = factor_->solve(weak_);
+      response_.compute(weak_.transpose() * reply_);
+      return;
+    }
+    projector_ = block_projector(weak_);
+    Sparse rest(a.rows(), a.cols());
+    rest.setIdentity();
+    const double scale = std::max(a.diagonal().mean(), 1e-300);
+    const Sparse held = projector_ * a * projector_;
+    factor_ = damped_factor(held + scale * (rest - projector_), rounding_share);
+  }
+
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const {
+    if (blocks_) return projector_ * factor_->solve(Eigen::MatrixXd(projector_ * b));
+    const Eigen::MatrixXd x = factor_->solve(b);
+    if (weak_.cols() == 0) return x;
+    return x - reply_ * response_.solve(weak_.transpose() * x);
+  }
+
+ private:
+  Eigen::MatrixXd weak_;
+  bool blocks_ = false;
+  Sparse projector_;
+  std::unique_ptr<Factor> factor_;
+  Eigen::MatrixXd reply_;
+  Eigen::LDLT<Eigen::MatrixXd> response_;
+};
 
 // What each scan's noise shared among places adds to its scatter (shared_noise.h), along all that
 // is not weak.
@@ -176,10 +233,10 @@ std::vector<Vector6> joint_step(std::span<const JointForm> forms, const JointFra
                                 const JointBasis& weak) {
   const JointSystem system(forms, frame);
   if (system.rows() == 0) return std::vector<Vector6>(frame.centres.size(), Vector6::Zero());
-  const auto factor = damped_factor(
-      matrix_of(system, system.sum([](const JointForm& form) { return form.a; })), rounding_share);
-  const Eigen::VectorXd x = factor->solve(system.right_side());
-  return system.twists(withheld(x, *factor, system.reduced(weak)));
+  const WithholdingSolver solver(
+      matrix_of(system, system.sum([](const JointForm& form) { return form.a; })),
+      system.reduced(weak));
+  return system.twists(solver.solve(system.right_side()));
 }
 
 std::vector<double> squared_steps(std::span<const JointForm> forms, const JointFrame& frame,
@@ -221,19 +278,17 @@ std::vector<std::optional<Matrix6>> joint_covariances(std::span<const JointForm>
     if (!frame.free[i]) covariances[i] = Matrix6::Zero();
   const JointSystem system(forms, frame);
   if (system.rows() == 0) return covariances;
-  const auto factor = damped_factor(matrix_of(system, system.sum_of(details)), rounding_share);
+  const WithholdingSolver solver(matrix_of(system, system.sum_of(details)), system.reduced(weak));
   const PlacePulls places = system.pulls_by_place(details);
   const Sparse scatter =
       matrix_of(system, system.scatter(places, noise_shares(places, covariances.size(), weak)));
-  const Eigen::MatrixXd open = system.reduced(weak);
   Matrix6 units = Matrix6::Identity();
   units.bottomRightCorner<3, 3>() *= frame.size_m;
   for (std::size_t i = 0; i < covariances.size(); ++i) {
     if (!system.has(i) || weak_motions_of(i, weak).cols() > 0) continue;
     Eigen::MatrixXd reply = Eigen::MatrixXd::Zero(system.rows(), 6);
     reply.middleRows<6>(system.row(i)).setIdentity();
-    reply = factor->solve(reply).eval();
-    for (Eigen::Index k = 0; k < 6; ++k) reply.col(k) = withheld(reply.col(k), *factor, open);
+    reply = solver.solve(reply);
     const Matrix6 covariance = reply.transpose() * (scatter * reply);
     covariances[i] = units * (0.5 * (covariance + covariance.transpose())) * units;
   }
