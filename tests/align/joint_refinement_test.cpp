@@ -111,6 +111,34 @@ TEST(JointStep, GivesNoPartAlongWhatIsWeak) {
   }
 }
 
+// 300 scans in a row, three motions of each withheld: of all x with W^T x = 0 it is the minimum,
+// where the slope A x - b lies in the span of W. The damping of 1e-10 is as above, the condition of
+// a row of n some n^2 times larger.
+TEST(JointStep, WithholdsManyMotionsOfSingleScans) {
+  constexpr std::size_t scans = 300;
+  RandomStream random(5, 0, 0);
+  std::vector<JointForm> forms;
+  for (std::size_t i = 0; i + 1 < scans; ++i) forms.push_back(random_form(i + 1, i, random));
+  JointBasis weak = JointBasis::Zero(6 * scans, 3 * (scans - 1));
+  for (Eigen::Index i = 1; i < Eigen::Index(scans); ++i)
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      weak(6 * i + k, 3 * (i - 1) + k) = 0.6;
+      weak(6 * i + k + 3, 3 * (i - 1) + k) = 0.8;
+    }
+  const auto twists = joint_step(forms, frame_of(scans), weak);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(6 * scans), slope = x;
+  for (std::size_t i = 0; i < scans; ++i) x.segment<6>(6 * Eigen::Index(i)) = twists[i];
+  for (const JointForm& form : forms) {
+    const Vector6 along = form.a * (twists[form.source] - twists[form.target]) - form.b;
+    slope.segment<6>(6 * Eigen::Index(form.source)) += along;
+    slope.segment<6>(6 * Eigen::Index(form.target)) -= along;
+  }
+  slope.head<6>().setZero();  // scan 0 is held
+  EXPECT_GT(x.norm(), 1);
+  EXPECT_LT((weak.transpose() * x).norm(), 1e-9);
+  EXPECT_LT((slope - weak * (weak.transpose() * slope)).norm(), 1e-5);
+}
+
 TEST(JointWeakMotions, AreNoneWhereTheDataFixAll) {
   const Ring r = ring();
   EXPECT_EQ(joint_weak_motions(r.forms, frame_of(4)).cols(), 0);
