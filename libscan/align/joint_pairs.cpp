@@ -65,6 +65,7 @@ JointDetail detail_of(const PairFinder& finder, const Pose& pose, const Pose& wo
     detail.pulls.push_back({place_of(point, patch_m), unit * turn * pull.gradient});
     detail.paired.push_back(couple.source);
   }
+  detail.curvature *= finder.shown_share(pose, couples, loss);
   detail.curvature = (turn * detail.curvature * turn.transpose()).eval();
   std::stable_sort(detail.pulls.begin(), detail.pulls.end(),
                    [](const PatchPull& a, const PatchPull& b) { return a.place < b.place; });

@@ -46,9 +46,10 @@ struct JointForm {
 
 // What the covariance takes more.
 struct JointDetail {
-  Matrix6 curvature = Matrix6::Zero();  // mean second derivative, free of the normals' noise
-  std::vector<PatchPull> pulls;         // by place
-  std::vector<std::uint32_t> paired;    // points of the source that have a partner
+  // Mean second derivative, free of the normals' noise and of what the partners' choice hides.
+  Matrix6 curvature = Matrix6::Zero();
+  std::vector<PatchPull> pulls;       // by place
+  std::vector<std::uint32_t> paired;  // points of the source that have a partner
 };
 
 // Both directions of every pair of scans, each point asked in up to `most_partners` others.

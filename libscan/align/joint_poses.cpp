@@ -23,8 +23,13 @@ constexpr double reach_in_spacings = 3;
 // Steps below half a standard error change nothing that can be known.
 constexpr double negligible_square = 0.25;
 constexpr double settled_share = 0.99;
-// Patches of the surface whose noise counts as independent: so many to a scan, as for one pair.
-constexpr double patches = 128;
+// Pairs left anywhere what they could not tell. At first all motions of whose apparent information
+// noise may feign two thirds stand as in the guesses; from there the pairs of all scans together
+// decide.
+constexpr double doubtful_excess = 0.5;
+// Places of the surface at which pulls are added up before their scatter: so many to a scan, enough
+// for shared_noise.h to tell from their own what neighbours share.
+constexpr double places = 2048;
 
 class Refinement {
  public:
@@ -36,6 +41,7 @@ class Refinement {
  private:
   JointFrame frame() const;
   bool find_pairs(std::vector<JointDetail>* details);
+  void settle(int most_rounds, const Progress& progress);
   void add_way_to_guesses(std::vector<Vector6>& twists) const;
   std::vector<Vector6> damped(std::vector<Vector6> twists);
   bool move(const std::vector<Vector6>& twists);
@@ -51,6 +57,7 @@ class Refinement {
   std::vector<JointCouple> couples_;
   std::vector<JointForm> forms_;
   JointBasis weak_;
+  double least_excess_ = 0;  // see joint_weak_motions
   double last_step_ = std::numeric_limits<double>::infinity();
   double step_share_ = 1;
 };
@@ -98,7 +105,7 @@ JointFrame Refinement::frame() const {
 bool Refinement::find_pairs(std::vector<JointDetail>* details) {
   std::vector<JointForm> all(couples_.size());
   std::vector<JointDetail> more(details ? couples_.size() : 0);
-  const double patch_m = out_.size_m * std::sqrt(4 * std::numbers::pi / patches);
+  const double patch_m = out_.size_m * std::sqrt(4 * std::numbers::pi / places);
   parallel_for(
       couples_.size(),
       [&](std::size_t k) {
@@ -117,7 +124,7 @@ bool Refinement::find_pairs(std::vector<JointDetail>* details) {
     forms_.push_back(all[k]);
     if (details) details->push_back(std::move(more[k]));
   }
-  weak_ = joint_weak_motions(forms_, frame());
+  weak_ = joint_weak_motions(forms_, frame(), least_excess_);
   return settled;
 }
 
@@ -171,8 +178,10 @@ bool Refinement::move(const std::vector<Vector6>& twists) {
   return all_still;
 }
 
-void Refinement::run(const Progress& progress) {
-  for (bool done = false; !done && out_.rounds < options_.max_rounds;) {
+void Refinement::settle(int most_rounds, const Progress& progress) {
+  last_step_ = std::numeric_limits<double>::infinity();
+  step_share_ = 1;
+  for (bool done = false; !done && out_.rounds < most_rounds;) {
     const bool settled = find_pairs(nullptr);
     if (forms_.empty()) break;
     std::vector<Vector6> twists = joint_step(forms_, frame(), weak_);
@@ -182,6 +191,13 @@ void Refinement::run(const Progress& progress) {
     ++out_.rounds;
     if (progress) progress("refine", double(out_.rounds) / options_.max_rounds);
   }
+}
+
+void Refinement::run(const Progress& progress) {
+  least_excess_ = doubtful_excess;
+  settle(options_.max_rounds / 2, progress);
+  least_excess_ = 0;
+  settle(options_.max_rounds, progress);
   std::vector<JointDetail> details;
   find_pairs(&details);
   summarise(details);

@@ -25,10 +25,12 @@ struct JointFrame {
 using JointBasis = Eigen::MatrixXd;
 
 // Orthonormal basis of the motions of all scans together that noise alone may feign to be fixed:
-// those with v^T A v < 1.5 v^T N v (observability.h), A and N summed over the forms. Sylvester's
-// law of inertia counts them by the pivots of A - 1.5 N; subspace iteration
-// finds them; of more than 48 only what single scans may do, the others held, is found.
-JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame);
+// those with v^T A v < (1 + e) v^T N v (observability.h), A and N summed over the forms; e is five
+// standard deviations of what chance makes of it where nothing is fixed, at least `least_excess`.
+// Sylvester's law of inertia counts them by the pivots of A - (1 + e) N; subspace iteration finds
+// them; of more than 48 only what single scans may do, the others held, is found.
+JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame,
+                              double least_excess = 0);
 
 // Twists that minimise the sum of the forms, with no part along `weak`; zero for scans that are not
 // free or in no form.
@@ -44,9 +46,11 @@ std::vector<double> squared_steps(std::span<const JointForm> forms, const JointF
 TwistBasis weak_motions_of(std::size_t scan, const JointBasis& weak);
 
 // Covariance of each scan's twist (rad, m), B^-1 M B^-1 with the curvature B and the scatter M of
-// the pulls, summed over all couples at one place first: so noise that neighbours, or the couples
-// of one scan, have in common counts (Huber 1967; Liang and Zeger 1986). None for scans that are
-// free and in no form or weak.
+// the pulls, summed over all couples at one place first: so noise that the couples of one scan, or
+// both directions of a couple, have in common counts (Huber 1967; Liang and Zeger 1986). What
+// places share is a number for each scan (shared_noise.h), by whose root its pulls are longer: a
+// scatter of patches wide enough to hold it would have so few that its inverse is too large by
+// half. None for scans that are free and in no form or weak.
 std::vector<std::optional<Matrix6>> joint_covariances(std::span<const JointForm> forms,
                                                       std::span<const JointDetail> details,
                                                       const JointFrame& frame,

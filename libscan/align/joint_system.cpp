@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/align/joint_system.h"
 
-#include <map>
+#include <cmath>
 
 namespace scan {
 namespace {
@@ -69,23 +69,35 @@ Eigen::VectorXd JointSystem::right_side() const {
   return b;
 }
 
-JointEntries JointSystem::scatter(std::span<const JointDetail> details) const {
-  // Per place: the pull on each scan that is seen there.
-  std::map<std::array<std::int64_t, 3>, std::map<std::size_t, Vector6>> places;
+PlacePulls JointSystem::pulls_by_place(std::span<const JointDetail> details) const {
+  PlacePulls places;
   for (std::size_t k = 0; k < forms_.size(); ++k) {
     const JointForm& form = forms_[k];
-    for (const PatchPull& pull : details[k].pulls)
-      for (const std::size_t scan : {form.source, form.target}) {
-        if (!has(scan)) continue;
-        const double sign = scan == form.source ? 1 : -1;
-        const Vector6 part = sign * twist_to_form(frame_, scan, form).transpose() * pull.gradient;
-        places[pull.place].try_emplace(scan, Vector6::Zero()).first->second += part;
+    for (const std::size_t scan : {form.source, form.target}) {
+      if (!has(scan)) continue;
+      const Matrix6 carry =
+          (scan == form.source ? 1 : -1) * twist_to_form(frame_, scan, form).transpose();
+      for (const PatchPull& pull : details[k].pulls) {
+        Vector6& sum = places[pull.place].try_emplace(scan, Vector6::Zero()).first->second;
+        sum += carry * pull.gradient;
       }
+    }
   }
-  JointEntries entries;
+  return places;
+}
+
+JointEntries JointSystem::scatter(const PlacePulls& places, std::span<const double> shares) const {
+  // Added up block by block: each place meets few scans, each couple of scans many places.
+  std::map<std::pair<std::size_t, std::size_t>, Matrix6> blocks;
   for (const auto& [place, pulls] : places)
     for (const auto& [i, a] : pulls)
-      for (const auto& [j, b] : pulls) add_block(entries, row(i), row(j), a * b.transpose());
+      for (const auto& [j, b] : pulls) {
+        Matrix6& sum = blocks.try_emplace({i, j}, Matrix6::Zero()).first->second;
+        sum += std::sqrt(shares[i] * shares[j]) * a * b.transpose();
+      }
+  JointEntries entries;
+  for (const auto& [scans, block] : blocks)
+    add_block(entries, row(scans.first), row(scans.second), block);
   return entries;
 }
 

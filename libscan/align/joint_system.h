@@ -3,6 +3,8 @@
 // The sparse normal equations that the forms of many couples of scans make together.
 #pragma once
 
+#include <map>
+
 #include "libscan/align/joint_refinement.h"
 
 namespace scan {
@@ -19,6 +21,9 @@ struct JointEntry {
   double value() const { return summand; }
 };
 using JointEntries = std::vector<JointEntry>;
+
+// What is seen at each place pulls each scan there with.
+using PlacePulls = std::map<std::array<std::int64_t, 3>, std::map<std::size_t, Vector6>>;
 
 // Six unknowns for each scan that is free and in a form; both arguments outlive it.
 class JointSystem {
@@ -39,8 +44,10 @@ class JointSystem {
   JointEntries sum_of(std::span<const JointDetail> details) const;  // of their curvatures
   Eigen::VectorXd right_side() const;
 
-  // Sum over all places of g g^T, g the pulls there of all forms together.
-  JointEntries scatter(std::span<const JointDetail> details) const;
+  // Sum over all places of g g^T, g the pulls there of all forms together, those on a scan times
+  // the root of its share (noise_shares).
+  JointEntries scatter(const PlacePulls& places, std::span<const double> shares) const;
+  PlacePulls pulls_by_place(std::span<const JointDetail> details) const;
 
   // Between the unknowns and the twists of all scans.
   std::vector<Vector6> twists(const Eigen::VectorXd& x) const;

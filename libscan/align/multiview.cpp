@@ -271,6 +271,8 @@ MultiviewResult Alignment::run() {
     find_poses();
     if (poses_.size() == 1) result_.scans[anchor_].stop = Stop::converged;
     if (std::count(tied_.begin(), tied_.end(), true) > 1) refine();
+    for (ScanEdge& edge : result_.edges)
+      edge.accepted = edge.accepted && within_guess(scans_, edge, poses_);
   }
   result_.stop = overall();
   return std::move(result_);

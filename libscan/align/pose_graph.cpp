@@ -8,6 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -80,7 +81,8 @@ class EnoughDone : public ceres::IterationCallback {
 double truncated_weight(double chi_square, double limit, double mu) {
   if (chi_square <= mu / (mu + 1) * limit) return 1;
   if (chi_square >= (mu + 1) / mu * limit) return 0;
-  return std::sqrt(limit * mu * (mu + 1) / chi_square) - mu;
+  // At the upper end rounding may put it below zero.
+  return std::max(0.0, std::sqrt(limit * mu * (mu + 1) / chi_square) - mu);
 }
 
 ceres::Solver::Options solver_options() {

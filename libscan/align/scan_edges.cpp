@@ -18,6 +18,10 @@ constexpr double rounding = 1e-12;
 // How far beyond its tolerance, in spacings, a point may lie and still be expected on the other.
 constexpr double expected_in_spacings = 4;
 
+// How far off a guess usually puts a scan, in units of its size.
+constexpr double guess_share_of_size = 0.05;
+constexpr double limit_of_six = 22.458;  // 99.9 % quantile of chi-square
+
 // With less, a pair that stands alone is tried from other starts as well.
 constexpr double good_agreement = 0.8;
 
@@ -151,6 +155,15 @@ SolvedPoses solve_edges(const PreparedScans& scans, std::span<const Pose> starts
   PoseGraph solved = solve_pose_graph(starts, graph, anchor);
   for (std::size_t k = 0; k < order.size(); ++k) edges[order[k]].accepted = solved.accepted[k];
   return {std::move(solved.world_from_scan), std::move(solved.tied)};
+}
+
+bool within_guess(const PreparedScans& scans, const ScanEdge& edge, std::span<const Pose> poses) {
+  const PreparedCloud& source = scans.clouds[edge.source];
+  const PreparedCloud& target = scans.clouds[edge.target];
+  const Pose found = local_pose(edge.target_from_source, source, target);
+  Vector6 off = log(poses[edge.target].inverse() * poses[edge.source] * found.inverse());
+  off.tail<3>() /= std::min(source.radius_m, target.radius_m);
+  return off.squaredNorm() <= limit_of_six * guess_share_of_size * guess_share_of_size;
 }
 
 }  // namespace scan

@@ -45,4 +45,10 @@ SolvedPoses solve_edges(const PreparedScans& scans, std::span<const Pose> starts
 // their rms over the size of the overlap.
 PoseEdge graph_edge(const PreparedScans& scans, const ScanEdge& edge);
 
+// Whether an edge is off the poses by no more than what a guess may be off, 0.05 rad and 0.05 of
+// the size. Along a motion that a pair leaves open its pose is the guess's: however far it is off
+// there, by its own information it would agree.
+bool within_guess(const PreparedScans& scans, const ScanEdge& edge,
+                  std::span<const Pose> world_from_local);
+
 }  // namespace scan

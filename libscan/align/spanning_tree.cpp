@@ -82,8 +82,12 @@ struct Forest {
     return cluster_from_scan[edge.target] * edge.target_from_source *
            cluster_from_scan[edge.source].inverse();
   }
+  // Rounding makes of each factor less of a rotation; of products of products it would double with
+  // each join.
   void join(const PoseEdge& edge) {
-    const Pose target_from_source_cluster = target_from_source(edge);
+    const Pose product = target_from_source(edge);
+    const Pose target_from_source_cluster =
+        make_pose(nearest_rotation(product.linear()), product.translation());
     const std::size_t kept = cluster[edge.target], gone = cluster[edge.source];
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       if (cluster[i] != gone) continue;

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "libscan/align/joint_system.h"
+#include "libscan/align/shared_noise.h"
 #include "libscan/core/random.h"
 
 namespace scan {
@@ -90,25 +92,70 @@ TEST(TwistToForm, CarriesPointsAsTheTwistItselfDoes) {
 }
 
 // Lagrange's equations of the constrained minimum: A x + W l = b, W^T x = 0.
+// Of one scan by itself, and of two together, which are withheld in different ways.
 TEST(JointStep, GivesNoPartAlongWhatIsWeak) {
   const Ring r = ring();
-  JointBasis weak = JointBasis::Zero(24, 1);
-  weak(9, 0) = 0.6, weak(20, 0) = 0.8;
-  Eigen::MatrixXd saddle = Eigen::MatrixXd::Zero(19, 19);
-  saddle.topLeftCorner<18, 18>() = r.a;
-  saddle.topRightCorner<18, 1>() = weak.bottomRows<18>();
-  saddle.bottomLeftCorner<1, 18>() = weak.bottomRows<18>().transpose();
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(19);
-  right.head<18>() = r.b;
-  const Eigen::VectorXd x = saddle.partialPivLu().solve(right);
-  const auto twists = joint_step(r.forms, frame_of(4), weak);
-  for (int i = 0; i < 3; ++i)
-    EXPECT_LT((twists[std::size_t(i) + 1] - x.segment<6>(6 * i)).norm(), 1e-7);
+  for (const double other : {0.0, 0.8}) {
+    JointBasis weak = JointBasis::Zero(24, 1);
+    weak(9, 0) = 0.6, weak(8, 0) = other == 0 ? 0.8 : 0, weak(20, 0) = other;
+    Eigen::MatrixXd saddle = Eigen::MatrixXd::Zero(19, 19);
+    saddle.topLeftCorner<18, 18>() = r.a;
+    saddle.topRightCorner<18, 1>() = weak.bottomRows<18>();
+    saddle.bottomLeftCorner<1, 18>() = weak.bottomRows<18>().transpose();
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(19);
+    right.head<18>() = r.b;
+    const Eigen::VectorXd x = saddle.partialPivLu().solve(right);
+    const auto twists = joint_step(r.forms, frame_of(4), weak);
+    for (int i = 0; i < 3; ++i)
+      EXPECT_LT((twists[std::size_t(i) + 1] - x.segment<6>(6 * i)).norm(), 1e-7);
+  }
+}
+
+// 300 scans in a row, three motions of each withheld: of all x with W^T x = 0 it is the minimum,
+// where the slope A x - b lies in the span of W. The damping of 1e-10 is as above, the condition of
+// a row of n some n^2 times larger.
+TEST(JointStep, WithholdsManyMotionsOfSingleScans) {
+  constexpr std::size_t scans = 300;
+  RandomStream random(5, 0, 0);
+  std::vector<JointForm> forms;
+  for (std::size_t i = 0; i + 1 < scans; ++i) forms.push_back(random_form(i + 1, i, random));
+  JointBasis weak = JointBasis::Zero(6 * scans, 3 * (scans - 1));
+  for (Eigen::Index i = 1; i < Eigen::Index(scans); ++i)
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      weak(6 * i + k, 3 * (i - 1) + k) = 0.6;
+      weak(6 * i + k + 3, 3 * (i - 1) + k) = 0.8;
+    }
+  const auto twists = joint_step(forms, frame_of(scans), weak);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(6 * scans), slope = x;
+  for (std::size_t i = 0; i < scans; ++i) x.segment<6>(6 * Eigen::Index(i)) = twists[i];
+  for (const JointForm& form : forms) {
+    const Vector6 along = form.a * (twists[form.source] - twists[form.target]) - form.b;
+    slope.segment<6>(6 * Eigen::Index(form.source)) += along;
+    slope.segment<6>(6 * Eigen::Index(form.target)) -= along;
+  }
+  slope.head<6>().setZero();  // scan 0 is held
+  EXPECT_GT(x.norm(), 1);
+  EXPECT_LT((weak.transpose() * x).norm(), 1e-9);
+  EXPECT_LT((slope - weak * (weak.transpose() * slope)).norm(), 1e-5);
 }
 
 TEST(JointWeakMotions, AreNoneWhereTheDataFixAll) {
   const Ring r = ring();
   EXPECT_EQ(joint_weak_motions(r.forms, frame_of(4)).cols(), 0);
+}
+
+// A fifth above noise may be chance among a thousand planes, whose difference has a standard
+// deviation of 2 sqrt(16 / 1000) = 25 % of the noise, and is none among a hundred thousand, 2.5 %.
+TEST(JointWeakMotions, WhatRisesAboveNoiseCountsWhereManyPlanesSaySo) {
+  const auto weak_among = [](double planes, double least_excess) {
+    JointForm form{.source = 1, .target = 0};
+    form.noise(0, 0) = 1;
+    form.apparent.diagonal() << 1.2, planes, planes, planes / 3, planes / 3, planes / 3;
+    return joint_weak_motions(std::vector{form}, frame_of(2), least_excess).cols();
+  };
+  EXPECT_EQ(weak_among(1e3, 0), 1);
+  EXPECT_EQ(weak_among(1e5, 0), 0);
+  EXPECT_EQ(weak_among(1e5, 0.5), 1);  // more caution is asked for
 }
 
 // Scans 2 and 3 hold each other, but what ties them to 0 and 1 leaves one motion to noise: they may
@@ -137,18 +184,25 @@ TEST(JointWeakMotions, FindWhatAGroupOfScansMayDoTogether) {
   }
 }
 
-// One scan against the anchor, pulls known: B^-1 M B^-1.
+// One scan against the anchor, pulls known: B^-1 M B^-1 times what the whitened pulls share.
 TEST(JointCovariances, AreTheSandwichOfCurvatureAndScatter) {
   RandomStream random(4, 0, 0);
   const std::vector<JointForm> forms = {random_form(1, 0, random), random_form(0, 1, random)};
   std::vector<JointDetail> details(2);
   Matrix6 scatter = Matrix6::Zero();
+  std::vector<Vector6> pulls;
+  std::vector<Vector3d> at;
   for (std::int64_t place = 0; place < 20; ++place) {
     const Vector6 there = random_row(random), back = random_row(random);
     details[0].pulls.push_back({{place, 0, 0}, there});
     details[1].pulls.push_back({{place, 0, 0}, back});
-    scatter += (there - back) * (there - back).transpose();  // scan 1 is the second's target
+    pulls.push_back(there - back);  // scan 1 is the second's target
+    at.emplace_back(double(place), 0, 0);
+    scatter += pulls.back() * pulls.back().transpose();
   }
+  const Eigen::LLT<Matrix6> spread(scatter);
+  for (Vector6& pull : pulls) pull = spread.matrixL().solve(pull).eval();
+  const double share = noise_sharing(pulls, at, 6);
   for (std::size_t k = 0; k < 2; ++k) details[k].curvature = forms[k].a;
   const Matrix6 inverse = (forms[0].a + forms[1].a).inverse();
   JointFrame frame = frame_of(2);
@@ -159,7 +213,7 @@ TEST(JointCovariances, AreTheSandwichOfCurvatureAndScatter) {
   ASSERT_TRUE(covariances[1]);
   Matrix6 units = Matrix6::Identity();
   units.bottomRightCorner<3, 3>() *= 3;
-  const Matrix6 expected = units * inverse * scatter * inverse * units;
+  const Matrix6 expected = share * units * inverse * scatter * inverse * units;
   EXPECT_LT((*covariances[1] - expected).norm(), 1e-7 * expected.norm());
   EXPECT_EQ(*covariances[0], Matrix6::Zero());
 }

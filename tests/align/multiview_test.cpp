@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "tests/align/simulated_views.h"
 #include "tests/align/turntable.h"
 
 namespace scan {
@@ -147,19 +150,21 @@ TEST(AlignScans, AnInterruptedCallGoesOnFromItsPairs) {
 }
 
 // The pair alone cannot see it, the loops do: scan 3's guess is so far off that its pairs settle
-// elsewhere, or not at all. No pair that sees much of one surface and is off by a tenth of the
-// object may be among the accepted.
+// elsewhere, or not at all. Two ends of a pair may each be off by the 2 mm of a turntable's scan.
+// Along a motion that the data leave open an edge has the pose of its guess, which counts with 0.05
+// rad and 0.05 of the size of 1 m: within the limit of 22.458 of its chi-square, points 2 m away
+// from the middle are off by at most sqrt(22.458) 0.05 sqrt(1 + 2^2) m = 0.53 m.
 TEST(AlignScans, WrongPairsAreNamedAndDoNoHarm) {
   test::Turntable t = test::turntable(8, 0.001);
   RandomStream random(77, 0, 0);
   t.guesses[3] = test::random_pose(random, 0.6, 0.3) * t.guesses[3];
   const MultiviewResult result = align_scans(t.clouds, t.guesses);
   for (const ScanEdge& edge : result.edges) {
+    if (!edge.accepted) continue;
     const Pose truth = t.truth[edge.target].inverse() * t.truth[edge.source];
-    const bool right = worst_m(t.clouds[edge.source], edge.target_from_source, truth) < 0.1;
-    if (edge.overlap > 0.3) {
-      EXPECT_TRUE(right || !edge.accepted) << edge.source << " " << edge.target;
-    }
+    EXPECT_LT(worst_m(t.clouds[edge.source], edge.target_from_source, truth),
+              edge.stop == Stop::degenerate ? 0.53 : 4e-3)
+        << edge.source << " " << edge.target;
   }
   for (std::size_t i = 0; i < 8; ++i)
     if (i != 3) {
@@ -167,6 +172,29 @@ TEST(AlignScans, WrongPairsAreNamedAndDoNoHarm) {
     }
   if (result.scans[3].stop == Stop::converged) {
     EXPECT_LT(worst_m(t.clouds[3], result.scans[3].world_from_scan, t.truth[3]), 2e-3);
+  }
+}
+
+// Chi-square with six degrees of freedom over six varies by 1 / 3, and so does at most the mean
+// over the scans of one set, which share the anchor's errors: the mean over 30 sets has a standard
+// error of 0.105, of which three. A fifth of bias is allowed: multiview_calibration measures 0.9
+// to 1.2
+// +- 0.08 over 60 sets. A scatter of 128 patches without a correction gives 1.8 and 2.1.
+TEST(AlignScans, CovariancesTellTheErrorsThatThereAre) {
+  for (const test::ScannerNoise noise :
+       {test::ScannerNoise::lidar, test::ScannerNoise::correlated}) {
+    std::vector<double> errors2(30);
+    parallel_for(
+        errors2.size(),
+        [&](std::size_t k) {
+          const test::SimulatedViews views = test::simulated_views(noise, 80, k + 1);
+          const MultiviewResult result = align_scans(views.clouds, views.guesses);
+          for (std::size_t i = 1; i < 4; ++i)
+            errors2[k] += test::normalised_error2(result, views.truth, i).value() / 18;
+        },
+        1);
+    const double mean = std::accumulate(errors2.begin(), errors2.end(), 0.0) / 30;
+    EXPECT_NEAR(mean, 1, 0.2 + 3 * 0.105) << test::name_of(noise);
   }
 }
 
@@ -212,6 +240,23 @@ TEST(AlignScans, IdenticalScansComeToLieOnEachOther) {
   EXPECT_EQ(result.stop, Stop::converged);
   for (const ScanPose& scan : result.scans)  // there is no noise: to the iteration's end, 1e-6
     EXPECT_LT(worst_m(cloud, scan.world_from_scan, Pose::Identity()), 1e-5);
+}
+
+TEST(AlignScans, WhereNoPairOverlapsAllKeepTheirGuess) {
+  std::vector<PointCloud> clouds;
+  std::vector<Pose> guesses;
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    clouds.push_back(test::lump(500, 90 + i));
+    guesses.push_back(Pose(Eigen::Translation3d(10.0 * double(i), 0, 0)));
+  }
+  const MultiviewResult result = align_scans(clouds, guesses);
+  EXPECT_EQ(result.stop, Stop::no_correspondences);
+  EXPECT_TRUE(result.edges.empty());
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(result.scans[i].stop, Stop::no_correspondences);
+    EXPECT_EQ(result.scans[i].world_from_scan.matrix(), guesses[i].matrix());
+    EXPECT_FALSE(result.scans[i].covariance);
+  }
 }
 
 TEST(AlignScans, GuessesThatAreNoRotationsAreRefused) {

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Convergence basins: which share of starts each method solves, against how far off they are, for
+// six shapes and four overlaps, libscan's methods beside PCL's and Open3D's; and how fast.
+//
+//   basins_study trials FOLDER STARTS SHAPE...   writes FOLDER/SHAPE.csv, on one thread
+//   basins_study figures FOLDER OUT              tables and pictures of all trials in FOLDER
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <string>
+
+#include "libscan/align/icp.h"
+#include "libscan/core/parallel.h"
+#include "libscan/io/atomic_file.h"
+#include "tests/benchmarks/align_peers.h"
+#include "tests/benchmarks/basins_figures.h"
+#include "tests/benchmarks/basins_pairs.h"
+
+namespace scan::test {
+namespace {
+
+constexpr std::size_t points = 2000;
+constexpr std::array overlaps = {1.0, 0.75, 0.5, 0.25};
+constexpr std::array turns_deg = {5.0, 15.0, 30.0, 45.0, 60.0, 90.0};
+constexpr std::array shifts_percent = {5.0, 10.0, 20.0, 35.0, 50.0};
+
+template <IcpMethod method>
+Outcome by_libscan(const PairCase& pair) {
+  const IcpResult result = icp(pair.source, pair.target, pair.guess, {.method = method});
+  return {.pose = result.target_from_source, .stop = std::string(name_of(result.stop))};
+}
+
+std::vector<AlignPeer> methods() {
+  std::vector<AlignPeer> all = {{"symmetric", by_libscan<IcpMethod::symmetric>},
+                                {"plane-to-plane", by_libscan<IcpMethod::plane_to_plane>},
+                                {"point-to-plane", by_libscan<IcpMethod::point_to_plane>},
+                                {"point-to-point", by_libscan<IcpMethod::point_to_point>}};
+  for (const AlignPeer& peer : pcl_align_peers())
+    if (peer.name != "PCL plane") all.push_back(peer);
+  for (const AlignPeer& peer : open3d_align_peers(1)) all.push_back(peer);
+  return all;
+}
+
+// Processor time, so that other work on the machine does not count.
+double processor_s() {
+  return double(std::clock()) / CLOCKS_PER_SEC;
+}
+
+void try_all(const PairCase& pair, Trial trial, std::vector<Trial>& trials) {
+  for (const AlignPeer& method : methods()) {
+    const double begin_s = processor_s();
+    const Outcome outcome = method.align(pair);
+    trial.seconds = processor_s() - begin_s;
+    trial.method = method.name;
+    trial.error_percent = 100 * moved_rms_m(pair, outcome.pose);
+    trial.claims_success = outcome.stop == "converged";
+    trials.push_back(trial);
+  }
+}
+
+// One start of every overlap and offset, all from pairs of the same seed.
+void add_start(const std::string& shape, std::uint64_t seed, std::vector<Trial>& trials) {
+  for (const double overlap : overlaps) {
+    PairCase pair = basin_pair(shape, overlap, points, seed);
+    Trial trial{.shape = shape, .overlap = overlap};
+    for (const double turn_deg : turns_deg) {
+      start_off(pair, turn_deg, 0, seed);
+      trial.turn_deg = turn_deg;
+      try_all(pair, trial, trials);
+    }
+    trial.turn_deg = 0;
+    for (const double shift_percent : shifts_percent) {
+      start_off(pair, 0, shift_percent / 100, seed);
+      trial.shift_percent = shift_percent;
+      try_all(pair, trial, trials);
+    }
+  }
+}
+
+// Written after each start, so that a call may be ended at any time.
+void make_trials(const std::filesystem::path& folder, std::size_t starts,
+                 const std::vector<std::string>& shapes) {
+  make_folder(folder);
+  std::vector<std::vector<Trial>> trials(shapes.size());
+  for (std::size_t k = 0; k < starts; ++k)
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      add_start(shapes[i], k + 1, trials[i]);
+      write_trials(folder / (shapes[i] + ".csv"), trials[i]);
+    }
+}
+
+int run(int count, char** arguments) {
+  const std::string verb = count > 3 ? arguments[1] : "";
+  if (verb == "trials") {
+    const ThreadLimit limit(1);
+    make_trials(arguments[2], std::strtoul(arguments[3], nullptr, 10),
+                {arguments + 4, arguments + count});
+    return 0;
+  }
+  if (verb == "figures") {
+    const std::vector<Trial> trials = read_trials(arguments[2]);
+    const std::filesystem::path out = arguments[3];
+    make_folder(out);
+    write_tables(out, trials);
+    write_file(out / "success_over_turn.svg",
+               success_figure(trials, &Trial::turn_deg, "start turned by, degrees"));
+    write_file(out / "success_over_shift.svg",
+               success_figure(trials, &Trial::shift_percent, "start shifted by, % of the size"));
+    write_file(out / "time_to_accuracy.svg", time_figure(trials));
+    return 0;
+  }
+  std::fprintf(stderr, "usage: basins_study trials FOLDER STARTS SHAPE... | figures FOLDER OUT\n");
+  return 2;
+}
+
+}  // namespace
+}  // namespace scan::test
+
+int main(int count, char** arguments) {
+  return scan::test::run(count, arguments);
+}
