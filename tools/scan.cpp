@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
           {"align", "bring scans into one frame",
            "scan align bun000.ply bun045.ply /tmp/aligned --init bun.conf", align_command},
           {"reconstruct", "make a surface from oriented points",
-           "scan reconstruct /tmp/aligned/aligned.ply surface.ply --depth 8 --trim 2mm",
+           "scan reconstruct /tmp/aligned/aligned.ply surface.ply --trim 2mm",
            reconstruct_command},
           {"verify", "measure a surface, a cloud, poses or a run against the truth",
            "scan verify surface.ply --truth part.stl --threshold 0.2mm", verify_command},
