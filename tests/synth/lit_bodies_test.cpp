@@ -125,6 +125,18 @@ TEST(LitBodies, AreThoseThatTheEmitterReaches) {
   EXPECT_EQ(lit_by(-Eigen::Vector3d::UnitX()) & ball, 0u);
 }
 
+// A half-space of glass has no centre and no size to reach: whatever way the beam looks, it may
+// light it, and through it everything.
+TEST(LitBodies, HoldUnboundedGlassWhereverTheBeamGoes) {
+  Scene scene;
+  scene.materials = {glass_material()};
+  scene.objects = {placed(PlaneShape{}, 0, {0, 0, -4})};
+  const RayCaster caster(scene);
+  const BeamLight beam{
+      .origin = {0, 0, 0}, .axis = {0.6, 0, -0.8}, .slope = 1e-3, .electrons_at_1m = 1};
+  EXPECT_EQ(Connector(caster, 4).lit_bodies(any_emitter(beam)), Lamp::all_bodies);
+}
+
 // A ball that a lit point touches from within is reached, from whatever side; most others are not.
 template <class Emitter>
 void expect_reaches_what_it_lights(const Emitter& emitter, double brightest_at_1m, double size_m) {
