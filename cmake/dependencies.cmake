@@ -19,7 +19,7 @@ if(LIBSCAN_WITH_CGAL)
   set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
   find_package(CGAL 5.5 REQUIRED)
 endif()
-if(LIBSCAN_TESTS)
+if(LIBSCAN_TESTS OR LIBSCAN_BENCHMARKS)  # one benchmark borrows a test's oracle
   find_package(GTest REQUIRED)
 endif()
 if(LIBSCAN_BENCHMARKS)
