@@ -18,6 +18,7 @@ h1 { margin-bottom: 0; } h2 { margin-top: 2.2rem; border-bottom: 1px solid #ccc;
 table { border-collapse: collapse; width: 100%; margin: .6rem 0; }
 th, td { text-align: left; padding: .3rem .6rem; border-bottom: 1px solid #ddd; vertical-align: top; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+tr.reason td { font-size: .85rem; color: #444; padding-left: 1.6rem; }
 .views { display: grid; grid-template-columns: repeat(3, 1fr); gap: .6rem; }
 figure { margin: 0; } figcaption { text-align: center; font-size: .9rem; } img { width: 100%; border: 1px solid #ddd; }
 pre { background: #f5f5f5; padding: 1rem; overflow-x: auto; font-size: .85rem; }

@@ -35,9 +35,8 @@ std::string banner(const ordered_json& verdict) {
 std::string measurement_table(const ordered_json& verdict) {
   std::string html =
       "<h2>Measurements</h2><table><tr><th>figure</th><th class=\"number\">value</th>"
-      "<th class=\"number\">95 % interval</th><th "
-      "class=\"number\">limit</th><th>verdict</th><th>over</th><th>reason of the "
-      "limit</th></tr>";
+      "<th class=\"number\">95 % interval</th><th class=\"number\">limit</th><th>verdict</th>"
+      "<th>over</th></tr>";
   for (const auto& m : verdict.at("measurements")) {
     const std::string unit = m.value("unit", "");
     const bool limited = m.contains("limit") && m.at("limit").is_number();
@@ -46,9 +45,10 @@ std::string measurement_table(const ordered_json& verdict) {
         cell(interval_of(m, unit), true) +
         cell(limited ? m.value("relation", "") + " " + number_of(m.at("limit"), unit) : "", true) +
         cell(limited ? (m.value("pass", false) ? "pass" : "FAIL") : "") +
-        cell(m.value("over", "") + " (" + std::to_string(m.value("count", 0ul)) + ")") +
-        cell(m.contains("reason") && m.at("reason").is_string() ? m.value("reason", "") : "") +
-        "</tr>";
+        cell(m.value("over", "") + " (" + std::to_string(m.value("count", 0ul)) + ")") + "</tr>";
+    if (limited)
+      html += "<tr class=\"reason\"><td colspan=\"6\">Why this limit: " +
+              escaped(m.value("reason", "")) + "</td></tr>";
   }
   return html + "</table>";
 }
