@@ -82,11 +82,8 @@ double RunOutcome::total_s() const {
   return sum;
 }
 
-StudyRuns::StudyRuns(nlohmann::json base, std::string place, fs::path folder, fs::path out)
-    : base_(std::move(base)),
-      place_(std::move(place)),
-      folder_(std::move(folder)),
-      runs_(std::move(out) / "runs") {
+StudyRuns::StudyRuns(std::string place, fs::path folder, fs::path out)
+    : place_(std::move(place)), folder_(std::move(folder)), runs_(std::move(out) / "runs") {
   make_folder(runs_);
 }
 

@@ -32,24 +32,19 @@ struct Spared {
 
 class StudyRuns {
  public:
-  // `base`: the recipe as it stands in its file, without "tradeoff"; `place` and `folder` are its
-  // file and where its meshes lie. Runs go to `out`/runs.
-  StudyRuns(nlohmann::json base, std::string place, std::filesystem::path folder,
-            std::filesystem::path out);
+  // `place` and `folder` are the recipe's file and where its meshes lie. Runs go to `out`/runs.
+  StudyRuns(std::string place, std::filesystem::path folder, std::filesystem::path out);
 
-  // Runs `recipe`, a variant of the base, under this seed; or reads its outcome if the folder
-  // `name` holds the same run already. scan::Error (input) for a recipe that cannot be read or a
-  // figure that no run measures; what fails later is the outcome's trouble.
+  // Runs `recipe`, as it stands in its file but for what is varied, under this seed; or reads its
+  // outcome if the folder `name` holds the same run already. scan::Error (input) for a recipe that
+  // cannot be read or a figure that no run measures; what fails later is the outcome's trouble.
   RunOutcome run(const std::string& name, const nlohmann::json& recipe, std::uint64_t seed,
                  const std::string& figure, const Spared& spared = {});
-
-  const nlohmann::json& base() const { return base_; }
 
  private:
   void stages(const std::filesystem::path& run, const Recipe& recipe, const Spared& spared,
               Console& console, std::map<std::string, double>& seconds);
 
-  nlohmann::json base_;
   std::string place_;
   std::filesystem::path folder_, runs_;
   struct Done {

@@ -58,7 +58,7 @@ class Work {
     seed_ = checked.seed;
     name_ = checked.name;
     recipe_.erase("tradeoff");
-    runs_.emplace(recipe_, arguments.recipe, fs::path(arguments.recipe).parent_path(),
+    runs_.emplace(arguments.recipe, fs::path(arguments.recipe).parent_path(),
                   fs::path(arguments.out));
     total_ = grid(study_).size() * static_cast<std::size_t>(study_.seeds);
   }
@@ -183,7 +183,7 @@ std::string tenths(double seconds) {
 
 ordered_json advice_json(const Work& work, const std::vector<StudyPoint>& points,
                          std::optional<std::size_t> chosen, double tolerance,
-                         const ordered_json& sources) {
+                         const ordered_json& sources, std::size_t runs_tried) {
   if (!chosen) return {{"text", "Every run failed: " + points.front().trouble}, {"meets", false}};
   const StudyPoint& point = points[*chosen];
   const bool meets = tolerance > 0 && point.error <= tolerance;
@@ -205,7 +205,7 @@ ordered_json advice_json(const Work& work, const std::vector<StudyPoint>& points
   return {{"text", text + "."},
           {"meets", meets},
           {"settings", setting_json(work.study(), point.setting)},
-          {"runs", work.runs_done()},
+          {"runs", runs_tried},
           {"runs_of_grid", work.runs_of_grid()}};
 }
 
@@ -231,13 +231,13 @@ int tradeoff(const Arguments& arguments, Console& console) {
                           ? search_grid(work.study(), measure)
                           : search_adaptively(work.study(), arguments.tolerance, measure);
   const auto chosen = advised(points, arguments.tolerance);
-  const ordered_json advice_runs = work.runs_done();
+  const std::size_t runs_tried = work.runs_done();  // before those that tell the sources apart
   ordered_json runs = ordered_json::array();
   for (const StudyPoint& point : points) runs.push_back(point_json(work.study(), point));
   const ordered_json sources =
       chosen ? sources_json(work, points[*chosen].setting) : ordered_json::array();
-  ordered_json advice = advice_json(work, points, chosen, arguments.tolerance, sources);
-  advice["runs"] = advice_runs;
+  const ordered_json advice =
+      advice_json(work, points, chosen, arguments.tolerance, sources, runs_tried);
   const ordered_json json = {{"figure", work.study().error},
                              {"unit", chosen ? points[*chosen].unit : "m"},
                              {"tolerance", arguments.tolerance},
