@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "libscan/core/error.h"
+#include "libscan/core/median.h"
 #include "libscan/core/random.h"
 #include "libscan/verify/artefacts.h"
 #include "synth/ray_caster.h"
@@ -128,11 +129,6 @@ using Test = std::vector<std::vector<BodyPoints>>;  // per place, per body
 using Select = std::function<const Points&(const BodyPoints&)>;
 using Figures = std::function<std::vector<Measurement>(const Select&)>;
 
-double median_of(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
 // The figures of the measured points, and beside each the median of what the draws give.
 void add_lines(std::vector<SheetLine>& sheet, const Test& test, const Figures& figures) {
   const std::size_t first = sheet.size();
@@ -146,7 +142,7 @@ void add_lines(std::vector<SheetLine>& sheet, const Test& test, const Figures& f
         figures([&](const BodyPoints& b) -> const Points& { return b.drawn[draw]; });
     for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i].push_back(of_draw[i].value);
   }
-  for (std::size_t i = 0; i < drawn.size(); ++i) sheet[first + i].predicted = median_of(drawn[i]);
+  for (std::size_t i = 0; i < drawn.size(); ++i) sheet[first + i].predicted = median(drawn[i]);
 }
 
 std::vector<Points> first_bodies(const Test& test, const Select& select) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "libscan/align/median.h"
+#include "libscan/core/median.h"
 #include "libscan/core/error.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/text.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libscan/core/error.h"
+#include "libscan/core/median.h"
 
 namespace scan::decoding {
 namespace {
@@ -16,13 +17,6 @@ void require(bool holds, const char* field, double value, const char* limit) {
   if (holds) return;
   throw Error(Trouble::input,
               std::string("sensor/") + field + ": " + std::to_string(value) + ", must be " + limit);
-}
-
-// Upper median; reorders `values`, which must not be empty.
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace

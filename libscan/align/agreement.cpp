@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libscan/align/loss.h"
-#include "libscan/align/median.h"
+#include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {

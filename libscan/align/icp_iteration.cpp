@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libscan/align/median.h"
+#include "libscan/core/median.h"
 
 namespace scan {
 namespace {

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "libscan/align/joint_refinement.h"
-#include "libscan/align/median.h"
 #include "libscan/align/overlaps.h"
+#include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {

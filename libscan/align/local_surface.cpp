@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libscan/align/median.h"
 #include "libscan/align/symmetric_matrix.h"
+#include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 #include "libscan/search/batch.h"
 

@@ -8,10 +8,10 @@
 
 #include "libscan/align/agreement.h"
 #include "libscan/align/joint_poses.h"
-#include "libscan/align/median.h"
 #include "libscan/align/overlaps.h"
 #include "libscan/align/scan_edges.h"
 #include "libscan/core/error.h"
+#include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {

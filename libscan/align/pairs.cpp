@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libscan/align/median.h"
+#include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {

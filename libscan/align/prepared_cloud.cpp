@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "libscan/align/median.h"
 #include "libscan/core/error.h"
+#include "libscan/core/median.h"
 #include "libscan/search/batch.h"
 #include "libscan/search/voxel_grid.h"
 

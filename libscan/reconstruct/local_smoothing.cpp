@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "libscan/core/median.h"
+
 namespace scan {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr double samples_per_region = 50;
 std::uint64_t key_of(const Eigen::Vector3i& cell) {
   return static_cast<std::uint64_t>(cell[2]) << 42 | static_cast<std::uint64_t>(cell[1]) << 21 |
          static_cast<std::uint64_t>(cell[0]);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace

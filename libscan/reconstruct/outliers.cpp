@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {
@@ -12,12 +13,6 @@ namespace {
 constexpr double alone = 2;           // reach over the neighbours' median reach
 constexpr double thin = 2;            // reach over that of the median point
 constexpr double least_flatness = 3;  // width over thickness where neighbours spread in a plane
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 

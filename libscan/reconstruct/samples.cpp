@@ -9,6 +9,7 @@
 #include <string>
 
 #include "libscan/core/error.h"
+#include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 #include "libscan/reconstruct/noise.h"
 #include "libscan/search/batch.h"
@@ -93,12 +94,6 @@ void estimate_areas(Samples& samples, std::size_t step) {
       samples.area[i] = areas[k / 2];
     }
   });
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 void measure_areas(Samples& samples) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "libscan/core/error.h"
+#include "libscan/core/median.h"
 #include "libscan/reconstruct/isosurface.h"
 #include "libscan/reconstruct/local_smoothing.h"
 #include "libscan/reconstruct/ssd_fit.h"
@@ -28,12 +29,6 @@ void require(bool fulfilled, const char* field, double value, const char* limit)
 
 bool is_length(double x) {
   return x >= 0 && std::isfinite(x);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Of each vertex, from the sample next to it.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libscan/core/median.h"
 #include "libscan/reconstruct/local_smoothing.h"
 
 namespace scan {
@@ -18,12 +19,6 @@ constexpr double least_sigmas = 1.5;
 // A trial has only to tell which of two lengths is better.
 constexpr double trial_residual = 0.03;
 constexpr double least_share_lowered = 0.02;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 class Fit {
  public:

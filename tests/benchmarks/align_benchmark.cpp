@@ -19,8 +19,8 @@
 #include <functional>
 
 #include "libscan/align/icp.h"
-#include "libscan/align/median.h"
 #include "libscan/core/cost.h"
+#include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 #include "tests/benchmarks/align_peers.h"
 
