@@ -65,8 +65,9 @@ std::vector<std::optional<StatedPose>> read_run_stated_poses(const std::filesyst
   const auto path = run / "alignment.json";
   if (!std::filesystem::exists(path)) return {};
   std::vector<std::optional<StatedPose>> stated;
+  const nlohmann::json alignment = read_json(path);
   try {
-    for (const auto& scan : read_json(path).at("scans"))
+    for (const auto& scan : alignment.at("scans"))
       stated.push_back(scan.at("covariance").is_null() ? std::nullopt
                                                        : std::optional(stated_pose(scan)));
   } catch (const nlohmann::json::exception& error) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // CGAL's Hausdorff distance of bounded error.
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/distance.h>
-#include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 
 #include "tests/benchmarks/metrics_peers.h"
@@ -10,7 +10,7 @@
 namespace scan {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 
 Surface surface_of(const Mesh& mesh) {
