@@ -141,9 +141,9 @@ void say_verdict(const ordered_json& verdict, const Console& console) {
       text += std::string("   ") + (m.at("pass").get<bool>() ? "pass" : "FAIL") + " (" +
               m.at("relation").get<std::string>() + " " + readable(m.at("limit"), unit) + ")";
     console.say(text);
-    console.say("      " + m.at("definition").get<std::string>() + "; over " +
-                std::to_string(m.at("count").get<std::size_t>()) + " " +
-                m.at("over").get<std::string>());
+    console.say("      " + m.at("definition").get<std::string>() + " [" +
+                m.at("over").get<std::string>() +
+                "; n = " + std::to_string(m.at("count").get<std::size_t>()) + "]");
   }
   console.say(verdict.at("pass").get<bool>() ? "PASS" : "FAIL");
 }

@@ -22,7 +22,7 @@ constexpr Line statistics[] = {{"_mean", "mean of the "},
                                {"_max", "largest of the "}};
 
 constexpr Line figures[] = {
-    {"hausdorff", "larger of accuracy_max and completeness_max"},
+    {"hausdorff", "distance of the farthest point of either surface from the other"},
     {"f_score", "2 P R / (P + R); P, R: shares of accuracy, completeness within the threshold"},
     {"normal_error_mean", "mean angle between measured and true outward normals"},
     {"area_error", "measured over true area, less 1"},
@@ -67,15 +67,15 @@ constexpr Line figures[] = {
     {"cylindricity_95", "narrowest width that holds 95 % of the residuals to the Gauss cylinder"},
     {"cylinder_axis_error", "angle between fitted and true axis"},
     {"step_error", "measured less calibrated height of the step"},
+    {"length_error", "measured less calibrated distance of two ball centres in the volume"},
+    {"relative_range_error", "measured less true distance behind the first plate, along the sight"},
     {"disparity_bad_2px", "share of the matched pixels off by more than 2 px"},
     {"disparity_bad_2px_all", "share of all pixels off by more than 2 px or not matched"},
     {"disparity_density", "share of the pixels that were matched"},
     {"disparity_error_median", "median of |measured less true disparity|"},
     {"relative_depth_error_median", "median of |measured over true depth, less 1|"}};
 
-}  // namespace
-
-std::string definition(const std::string& name) {
+std::string of_one(const std::string& name) {
   for (const auto& [known, text] : figures)
     if (name == known) return std::string(text);
   for (const auto& [way, what] : distances)
@@ -83,6 +83,23 @@ std::string definition(const std::string& name) {
       if (name == std::string(way) + std::string(suffix))
         return std::string(statistic) + std::string(what);
   return {};
+}
+
+}  // namespace
+
+std::string definition(const std::string& name) {
+  constexpr std::string_view merged = "merged_", repeated = "_repeatability";
+  std::string text;
+  if (name.starts_with(merged)) {
+    text = of_one(name.substr(merged.size()));
+    if (!text.empty()) text += ", of several views together";
+  } else if (name.ends_with(repeated)) {
+    text = of_one(name.substr(0, name.size() - repeated.size()));
+    if (!text.empty()) text = "standard deviation of " + text;
+  } else {
+    text = of_one(name);
+  }
+  return text;
 }
 
 }  // namespace scan

@@ -61,6 +61,10 @@ TEST(Definition, IsThereForEachArtefactAndDisparityFigure) {
   Points mantle;
   for (const auto& x : plate) mantle.push_back({std::cos(x.x()), std::sin(x.x()), x.y()});
   expect_defined(probing_errors(std::vector<Points>{ball}, 2));
+  expect_defined(length_errors(std::vector<PlacedBall>(2, {ball, {0, 0, 0}})));
+  expect_defined(relative_range_errors(std::vector<PlacedPlate>{{plate, {0, 0, 0}}}, {0, 0, 1}));
+  expect_defined({repeatability({.name = "probing_size"}, std::vector<double>{1, 2})});
+  EXPECT_NE(definition("merged_probing_form"), definition("probing_form"));
   expect_defined(spacing_errors(std::vector{BallBar{ball, ball}}, 0));
   expect_defined(flatness_errors(std::vector<Points>{plate}));
   expect_defined(step_errors(std::vector{Step{plate, plate}}, 0));
@@ -72,6 +76,8 @@ TEST(Definition, IsThereForEachArtefactAndDisparityFigure) {
 TEST(Definition, OfAnUnknownNameIsEmpty) {
   EXPECT_EQ(definition("accuracy"), "");
   EXPECT_EQ(definition("accuracy_p9"), "");
+  EXPECT_EQ(definition("merged_accuracy"), "");
+  EXPECT_EQ(definition("accuracy_repeatability"), "");
 }
 
 }  // namespace
