@@ -7,7 +7,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
-#include "libscan/io/scan_file.h"
+#include "libscan/io/surface_file.h"
 #include "tools/commands.h"
 #include "tools/inputs.h"
 #include "tools/surface_stage.h"
@@ -46,7 +46,7 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
 
   const SurfaceResult result =
       make_surface(joined(scans, poses), joined_viewpoints(scans, poses), settings, console);
-  write_mesh(output, result.surface);
+  write_supported_mesh(output, result.surface, result.support_m, result.standard_error_m);
   const auto json = surface_json(result);
   if (settings.method == ReconstructMethod::automatic)
     console.say("method " + result.method + ": " + result.method_reason);
