@@ -72,7 +72,7 @@ void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Con
   const std::vector<Pose> poses = read_run_poses(run);
   const SurfaceResult result = make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
                                             recipe.reconstruct, console);
-  write_mesh(run / "surface.ply", result.surface);
+  write_surface(run / "surface.ply", result);
   write_json(run / "reconstruction.json", surface_json(result));
 }
 
