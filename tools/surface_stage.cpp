@@ -48,7 +48,8 @@ SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpo
     viewpoints.clear();  // a cube's mean was seen from several places
   }
   SurfaceResult result = reconstruct(
-      cloud, viewpoints, {.method = settings.method, .ssd = settings.ssd}, console.progress());
+      cloud, viewpoints, {.method = settings.method, .ssd = settings.ssd, .sharp = settings.sharp},
+      console.progress());
   console.time("reconstruct", result.cost.seconds);
   tell_of_points(result, console);
   if (settings.trim_m > 0) trim(result, settings.trim_m);
@@ -57,6 +58,10 @@ SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpo
                                           readable_length(settings.trim_m) +
                                           " of a point (--trim)");
   return result;
+}
+
+SupportedMesh supported(const SurfaceResult& result) {
+  return {result.surface, result.support_m, result.data_spacing_m, result.standard_error_m};
 }
 
 }  // namespace scan
