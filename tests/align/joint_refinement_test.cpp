@@ -218,5 +218,49 @@ TEST(JointCovariances, AreTheSandwichOfCurvatureAndScatter) {
   EXPECT_EQ(*covariances[0], Matrix6::Zero());
 }
 
+// Scans 1 and 2 in a row, the noise between them shared by places and ten times stronger: what
+// holds scan 1 is its couple with the anchor alone. So its covariance is that of this couple, times
+// a number.
+TEST(JointCovariances, OfAChainAddUpFromTheAnchor) {
+  RandomStream random(6, 0, 0);
+  const std::vector<JointForm> forms = {random_form(1, 0, random), random_form(2, 1, random)};
+  std::vector<JointDetail> details(2);
+  Matrix6 scatter = Matrix6::Zero();
+  for (std::int64_t place = 0; place < 2000; ++place) {
+    const Vector6 near = random_row(random);
+    details[0].pulls.push_back({{place, 0, 0}, near});
+    scatter += near * near.transpose();
+  }
+  Vector6 shared = Vector6::Zero();
+  for (std::int64_t place = 2000; place < 4000; ++place) {
+    if (place % 20 == 0) shared = 10 * random_row(random);
+    details[1].pulls.push_back({{place, 0, 0}, shared});
+  }
+  for (std::size_t k = 0; k < 2; ++k) details[k].curvature = forms[k].a;
+  const auto covariances = joint_covariances(forms, details, frame_of(3), JointBasis(18, 0));
+  const Matrix6 inverse = forms[0].a.inverse(), link = inverse * scatter * inverse;
+  const double times = covariances[1]->trace() / link.trace();
+  EXPECT_GE(times, 1);
+  EXPECT_LT((*covariances[1] - times * link).norm(), 1e-7 * times * link.norm());
+}
+
+// A row that sways as a whole does not move; one whose last scan alone moves does, by x^T A x.
+TEST(RelativeSteps, AreWhatMovesBetweenScans) {
+  RandomStream random(7, 0, 0);
+  const std::vector<JointForm> forms = {random_form(2, 1, random), random_form(3, 2, random)};
+  const Vector6 x = random_row(random);
+  for (const RelativeStep& step : relative_steps(forms, frame_of(4), std::vector<Vector6>(4, x)))
+    EXPECT_EQ(step.square + step.rotation_rad + step.translation, 0);
+  std::vector<Vector6> last(4, Vector6::Zero());
+  last[3] = x;
+  const auto steps = relative_steps(forms, frame_of(4), last);
+  EXPECT_EQ(steps[1].square, 0);
+  for (const std::size_t i : {2u, 3u}) {
+    EXPECT_DOUBLE_EQ(steps[i].square, x.dot(forms[1].a * x));
+    EXPECT_DOUBLE_EQ(steps[i].rotation_rad, x.head<3>().norm());
+    EXPECT_DOUBLE_EQ(steps[i].translation, x.tail<3>().norm());
+  }
+}
+
 }  // namespace
 }  // namespace scan

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Sparse solves for the poses of many scans together, some motions of which are withheld.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <memory>
+
+#include "libscan/align/joint_system.h"
+
+namespace scan {
+
+using JointMatrix = Eigen::SparseMatrix<double>;
+using JointFactor = Eigen::SimplicialLDLT<JointMatrix>;
+
+JointMatrix matrix_of(const JointSystem& system, const JointEntries& entries);
+
+// Of A + a share of its diagonal, so that what nothing holds stays where it is. Throws scan::Error
+// (computation) where that is singular.
+std::unique_ptr<JointFactor> damped_factor(const JointMatrix& a, double share);
+
+// Solutions of A x = b in least squares with no part along orthonormal `weak` motions. Where each
+// is of one scan, with P = I - W W^T these are (P A P + s W W^T)^-1 P b for any s, as sparse as A;
+// few of many scans are taken out of A^-1 b.
+class WithholdingSolver {
+ public:
+  WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak);
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+
+ private:
+  Eigen::MatrixXd weak_;
+  bool blocks_ = false;
+  JointMatrix projector_;
+  std::unique_ptr<JointFactor> factor_;
+  Eigen::MatrixXd reply_;
+  Eigen::LDLT<Eigen::MatrixXd> response_;
+};
+
+}  // namespace scan
