@@ -103,6 +103,7 @@ std::vector<Measurement> measure_disparity(const Arguments& arguments) {
 std::vector<Measurement> measure_files(const Arguments& arguments, Console& console) {
   if (is_disparity(arguments.measured)) return measure_disparity(arguments);
   const TrueSurface truth = read_true_surface(arguments.truth);
+  warn_of_holes(arguments.truth, truth, console);
   const SurfaceErrorOptions options{.f_score_threshold_m = arguments.threshold_m};
   std::vector<Measurement> measurements;
   std::vector<Eigen::Vector3d> points;

@@ -144,6 +144,32 @@ TEST(VerifyInput, ARunFolderCutShortIsNamedWithItsStage) {
   EXPECT_EQ(verified().exit_code, input) << verified().err;
 }
 
+TEST(VerifyInput, ATruthWithHolesIsSaidToHaveThem) {
+  const Folder folder;
+  std::string open = cube_off(1, 0);
+  open.replace(open.find("8 12 0"), 6, "8 11 0");
+  open.erase(open.find("3 1 7 5"));
+  spill(folder / "measured.off", cube_off(1, 0));
+  spill(folder / "open.off", open);
+  const Outcome outcome = run_scan({"verify", (folder / "measured.off").string(), "--truth",
+                                    (folder / "open.off").string(), "--json"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(says(outcome, "has holes (3 boundary edges)")) << outcome.err;
+  EXPECT_EQ(outcome.out.find("volume_error"), std::string::npos);
+  EXPECT_FALSE(says(judged(folder, cube_off(1, 0)).outcome, "holes"));
+}
+
+// Of points without coordinates the cloud keeps none; a surface of none is refused.
+TEST(VerifyInput, ACloudOfNothingIsRefused) {
+  const Folder folder;
+  spill(folder / "cloud.xyz", "nan nan nan\nnan 0 0\n");
+  spill(folder / "truth.off", cube_off(1, 0));
+  const Outcome outcome = run_scan(
+      {"verify", (folder / "cloud.xyz").string(), "--truth", (folder / "truth.off").string()});
+  EXPECT_EQ(outcome.exit_code, input);
+  EXPECT_TRUE(says(outcome, "cloud.xyz")) << outcome.err;
+}
+
 TEST(VerifyInput, ALimitOnWhatWasNotMeasuredIsAnError) {
   const Folder folder;
   const auto limits = (folder / "limits.json").string();

@@ -77,6 +77,23 @@ TEST(Hausdorff, FindsAPointWithinATriangle) {
   EXPECT_LE(bounds.high, 1.01 * bounds.low);
 }
 
+// Of a triangle with three crumbs at its corners the middle is farthest, the circle's radius away.
+TEST(Hausdorff, FindsTheMiddleOfATriangle) {
+  const Mesh face{{{0, 0, 0}, {1, 0, 0}, {0.5, std::sqrt(0.75), 0}}, {{0, 1, 2}}};
+  Mesh crumbs;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d& at = face.vertices[k];
+    for (const Eigen::Vector3d& by : {Eigen::Vector3d(0, 0, 0), {1e-9, 0, 0}, {0, 1e-9, 0}})
+      crumbs.vertices.push_back(at + by);
+    crumbs.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  const double radius = 1 / std::numbers::sqrt3;
+  const Interval bounds = farthest_distance_m(face, crumbs);
+  EXPECT_LE(bounds.low, radius * (1 + 1e-8));
+  EXPECT_GE(bounds.high, radius * (1 - 1e-8));
+  EXPECT_LE(bounds.high, 1.01 * bounds.low);
+}
+
 // The bounds hold what samples find, and a budget too small widens them and does not break them.
 TEST(Hausdorff, HoldsTheFarthestSample) {
   const Mesh a = shaken(torus(3, 1, 30, 20), 0.05), b = torus(3, 1, 60, 40);
