@@ -16,6 +16,10 @@ namespace scan {
 // The partner of a source point, and how far off it is.
 struct Match {
   std::uint32_t target = no_point;  // nearest, also where it passes no gate: the next guess
+  // Where the source point was when its nearest was last searched for, and how far off at least all
+  // others were: while it has moved less than they are farther, no search is needed.
+  float others_m = 0;
+  Eigen::Vector3f searched_at = Eigen::Vector3f::Zero();
   double residual_m = unlimited_m;  // size of what the method minimises; unlimited: no pair
 };
 

@@ -66,6 +66,30 @@ TEST(PairFinder, GuessesChangeNothing) {
   }
 }
 
+// Partners kept without a search are still the nearest: through motions of all sizes, to and fro,
+// at coordinates far from zero and small.
+TEST(PairFinder, AWayInManyStepsChangesNothing) {
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    auto [source, target] = test::split(test::bumpy_surface(3000, 4), 5);
+    for (PointCloud* cloud : {&source, &target})
+      for (Vector3d& x : cloud->points) x *= scale;
+    const Problem problem(source, target);
+    std::vector<Match> warm;
+    double step_m = 0.1 * scale;
+    for (int k = 0; k < 40; ++k, step_m *= -0.8) {
+      const Pose pose =
+          local_pose(shift(step_m, 0.3 * step_m, 0.1 * step_m), problem.source, problem.target);
+      problem.finder.find(pose, problem.sample, warm);
+      std::vector<Match> cold;
+      problem.finder.find(pose, problem.sample, cold);
+      for (std::size_t i = 0; i < cold.size(); ++i) {
+        ASSERT_EQ(warm[i].target, cold[i].target) << k << " " << i;
+        ASSERT_EQ(warm[i].residual_m, cold[i].residual_m) << k << " " << i;
+      }
+    }
+  }
+}
+
 TEST(PairFinder, NormalsThatDisagreeDoNotPair) {
   const PointCloud cloud = test::plane(500, 6);
   PointCloud flipped = cloud;
