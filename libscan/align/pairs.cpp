@@ -97,10 +97,12 @@ void PairFinder::find(const Pose& pose, std::span<const std::uint32_t> sample,
   const bool signs = source_.oriented && target_.oriented;
   const bool planes =
       options_.method == IcpMethod::point_to_plane || options_.method == IcpMethod::symmetric;
+  const double reach_share =
+      options_.method == IcpMethod::point_to_point ? 1 : plane_share_of_reach;
   const auto passes = [&](std::uint32_t i, std::uint32_t j, const Eigen::Vector3d& apart) {
     const Eigen::Vector3d& there = target_.normals[j];
     if (there.isZero(0)) return !planes;
-    const double across_m = apart.dot(there), reach_m = target_.fits[j].reach_m;
+    const double across_m = apart.dot(there), reach_m = reach_share * target_.fits[j].reach_m;
     if (apart.squaredNorm() - across_m * across_m > reach_m * reach_m) return false;
     const Eigen::Vector3d& here = source_.normals[i];
     if (here.isZero(0)) return true;
