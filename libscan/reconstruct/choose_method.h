@@ -19,7 +19,7 @@ struct MethodChoice {
 
 // A surface with an end (a rim half as long as the whole, whatever the number of points; holes have
 // short rims) is fused where the scanners are known;
-// where they are not, and the points lie flat (below 0.1), it is fitted locally, which ends where
+// where they are not, and the points lie flat (below 0.25), it is fitted locally, which ends where
 // the samples end. Everything else is a closed surface or noisy: SSD.
 MethodChoice choose_method(const PreparedPoints& points);
 
