@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace scan {
 namespace {
 
@@ -46,6 +48,24 @@ TEST(CollapsingMesh, RefusesToFoldOver) {
   const CollapsingMesh mesh(strip());
   EXPECT_TRUE(mesh.may_collapse(6, 7, {1.5, 1, 0}));
   EXPECT_FALSE(mesh.may_collapse(6, 7, {3.5, 1, 0}));
+}
+
+// A tube of three sides: merging two vertices of a ring would pinch it shut, though nothing folds.
+TEST(CollapsingMesh, RefusesToPinchATube) {
+  Mesh tube;
+  for (int ring = 0; ring < 5; ++ring)
+    for (int i = 0; i < 3; ++i)
+      tube.vertices.push_back({std::cos(2.1 * i), std::sin(2.1 * i), 10.0 * ring});
+  for (std::uint32_t ring = 0; ring < 4; ++ring)
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = 3 * ring + i, b = 3 * ring + (i + 1) % 3;
+      tube.triangles.push_back({a, b, b + 3});
+      tube.triangles.push_back({a, b + 3, a + 3});
+    }
+  const CollapsingMesh mesh(tube);
+  EXPECT_FALSE(mesh.may_collapse(6, 7, tube.vertices[6]));
+  EXPECT_FALSE(mesh.may_collapse(6, 7, (tube.vertices[6] + tube.vertices[7]) / 2));
+  EXPECT_FALSE(mesh.may_collapse(6, 7, (9 * tube.vertices[6] + tube.vertices[7]) / 10));
 }
 
 TEST(CollapsingMesh, RefusesABridgeBetweenRims) {
