@@ -62,6 +62,7 @@ void fields(Fields& f, ReconstructSettings& s) {
   f.boolean("sharp", s.sharp);
   f.length("thin", s.thin_m);
   f.length("trim", s.trim_m);
+  f.length("decimate", s.decimate_m);
   f.length("max_sigma", s.max_sigma_m);
 }
 

@@ -23,6 +23,7 @@ struct Arguments {
   long depth = SsdOptions{}.depth;
   bool sharp = false;
   double trim_m = 0;
+  double decimate_m = 0;
   double thin_m = 0;
 };
 
@@ -53,6 +54,7 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   settings.ssd.depth = static_cast<int>(arguments.depth);
   settings.sharp = arguments.sharp;
   settings.trim_m = arguments.trim_m;
+  settings.decimate_m = arguments.decimate_m;
   settings.thin_m = arguments.thin_m;
 
   const SurfaceResult result =
@@ -72,6 +74,10 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   if (result.sharp.edge_vertices > 0)
     console.say(std::to_string(result.sharp.edge_vertices) + " vertices put on sharp edges, " +
                 std::to_string(result.sharp.corners) + " of them corners");
+  if (result.decimation.is_proven)
+    console.say("decimated from " + std::to_string(result.decimation.triangles_before) +
+                " triangles, both surfaces within " + readable_length(result.decimation.bound_m) +
+                " of one another");
   if (result.trimmed_area_m2 > 0)
     console.say("trimmed " + area_text(result.trimmed_area_m2, result));
   if (result.depth > 0)
@@ -93,6 +99,8 @@ Action reconstruct_command(CommandLine& line) {
   line.option("--poses", arguments->poses, "a pose for each input, in their order");
   line.flag("--sharp", arguments->sharp, "put edges and corners back; for points of little noise");
   line.length("--trim", arguments->trim_m, "remove surface farther than this from every point");
+  line.length("--decimate", arguments->decimate_m,
+              "merge triangles as long as the surface stays within this distance, which is proven");
   line.length("--thin", arguments->thin_m, "first thin the points to one per cube of this side");
   return [arguments](Console& console) { return reconstruct_files(*arguments, console); };
 }

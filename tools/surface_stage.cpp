@@ -3,6 +3,7 @@
 #include "tools/surface_stage.h"
 
 #include "libscan/core/error.h"
+#include "libscan/reconstruct/decimate.h"
 #include "libscan/reconstruct/trim.h"
 #include "libscan/search/voxel_grid.h"
 
@@ -57,6 +58,9 @@ SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpo
     throw Error(Trouble::computation, "nothing of the surface is within " +
                                           readable_length(settings.trim_m) +
                                           " of a point (--trim)");
+  if (settings.decimate_m > 0 && !decimate(result, settings.decimate_m).is_proven)
+    console.warn("decimation within " + readable_length(settings.decimate_m) +
+                 " could not be proven: the surface keeps all its triangles");
   return result;
 }
 

@@ -22,6 +22,14 @@ struct SharpReport {
   std::size_t corners = 0;
 };
 
+// What decimation has done (decimate.h).
+struct DecimateReport {
+  double tolerance_m = 0;
+  double bound_m = 0;                // of the distance between the surfaces, both ways
+  std::size_t triangles_before = 0;  // 0: nothing was asked for
+  bool is_proven = false;            // else the surface stayed as it was
+};
+
 struct SurfaceResult {
   Mesh surface;
   std::string method;                  // set by reconstruct()
@@ -44,6 +52,7 @@ struct SurfaceResult {
   std::size_t estimated_normals = 0;  // were missing
   std::size_t turned_normals = 0;     // pointed the wrong way
   SharpReport sharp;
+  DecimateReport decimation;
   double trimmed_area_m2 = 0;  // of surface without support, cut away
   Cost cost;
 };
