@@ -52,9 +52,12 @@ void add(std::vector<Measurement>& to, std::vector<Measurement> more) {
 
 }  // namespace
 
+Pose true_world_from_world(const RunResult& result, const Truth& truth) {
+  return gauge(result.world_from_scan, true_poses(truth), picked_points(result.scans));
+}
+
 Mesh in_true_world(const RunResult& result, const Truth& truth) {
-  return transformed(gauge(result.world_from_scan, true_poses(truth), picked_points(result.scans)),
-                     result.surface);
+  return transformed(true_world_from_world(result, truth), result.surface);
 }
 
 std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth,

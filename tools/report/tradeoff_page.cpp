@@ -8,6 +8,7 @@
 #include "tools/console.h"
 #include "tools/report/html.h"
 #include "tools/report/tradeoff_plot.h"
+#include "tools/version.h"
 
 namespace scan {
 namespace {
@@ -61,7 +62,7 @@ std::string seconds_text(const ordered_json& value) {
 }
 
 std::string run_table(const ordered_json& tradeoff, const std::string& unit) {
-  std::string html = "<h2>Settings</h2><table><tr>";
+  std::string html = "<h3>Settings</h3><div class=\"wide\"><table><tr>";
   for (const auto& [key, value] : tradeoff.at("runs").at(0).at("settings").items())
     html += "<th>" + escaped(key) + "</th>";
   html +=
@@ -91,13 +92,13 @@ std::string run_table(const ordered_json& tradeoff, const std::string& unit) {
                                                   : "") +
             "</tr>";
   }
-  return html + "</table>";
+  return html + "</table></div>";
 }
 
 std::string source_table(const ordered_json& sources, const std::string& unit) {
   if (sources.empty()) return "";
   std::string html =
-      "<h2>Where the error comes from</h2><p>Runs of the advised settings with the same random "
+      "<h3>Where the error comes from</h3><p>Runs of the advised settings with the same random "
       "streams, spared one source after another.</p><table><tr><th>source</th>"
       "<th class=\"number\">share of the mean square</th><th class=\"number\">error</th></tr>";
   for (const auto& source : sources) {
@@ -111,19 +112,22 @@ std::string source_table(const ordered_json& sources, const std::string& unit) {
 
 }  // namespace
 
-std::string tradeoff_page(const std::string& title, const ordered_json& tradeoff) {
+std::string tradeoff_parts(const ordered_json& tradeoff) {
   const std::string unit = tradeoff.at("unit").get<std::string>();
   const std::string figure = tradeoff.at("figure").get<std::string>();
-  std::string html = page_head(title + ": what accuracy costs");
-  html += "<p><b>" + escaped(tradeoff.at("advice").at("text").get<std::string>()) + "</b></p>";
-  html +=
-      "<p>Filled marks are the front: nothing tried is both better and faster. Bars reach from "
-      "the least to the most of the seeds. " +
-      std::to_string(tradeoff.at("threads").get<int>()) + " threads, " +
-      escaped(tradeoff.at("machine").get<std::string>()) + ".</p>";
-  html += tradeoff_plot(marks_of(tradeoff), figure, unit, number(tradeoff.at("tolerance")));
-  html += source_table(tradeoff.at("sources"), unit) + run_table(tradeoff, unit);
-  return html + "</body></html>\n";
+  return "<p><strong>" + escaped(tradeoff.at("advice").at("text").get<std::string>()) +
+         "</strong></p><p>Filled marks are the front: nothing tried is both better and faster. "
+         "Bars reach from the least to the most of the seeds. " +
+         std::to_string(tradeoff.at("threads").get<int>()) + " threads, " +
+         escaped(tradeoff.at("machine").get<std::string>()) + ".</p>" +
+         tradeoff_plot(marks_of(tradeoff), figure, unit, number(tradeoff.at("tolerance"))) +
+         source_table(tradeoff.at("sources"), unit) + run_table(tradeoff, unit);
+}
+
+std::string tradeoff_page(const std::string& title, const ordered_json& tradeoff) {
+  const std::string whole = title + ": what accuracy costs";
+  return page_head(whole) + "<h1>" + escaped(whole) + "</h1><p class=\"quiet\">libscan " +
+         version_text() + "</p><main>" + tradeoff_parts(tradeoff) + "</main></body></html>\n";
 }
 
 }  // namespace scan

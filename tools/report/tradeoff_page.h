@@ -11,4 +11,7 @@ namespace scan {
 // `tradeoff` has the keys of tradeoff.json (tools/tradeoff.cpp).
 std::string tradeoff_page(const std::string& title, const nlohmann::ordered_json& tradeoff);
 
+// The same without head and end, for pages that show more.
+std::string tradeoff_parts(const nlohmann::ordered_json& tradeoff);
+
 }  // namespace scan

@@ -59,13 +59,13 @@ std::string frame(const Axis& x, const Axis& y, const std::string& figure,
                   const std::string& unit) {
   std::string svg;
   for (const double tick : ticks(x)) {
-    svg += print("<line x1='%.1f' y1='%g' x2='%.1f' y2='%g' stroke='#ddd'/>", x.at(tick), top,
+    svg += print("<line x1='%.1f' y1='%g' x2='%.1f' y2='%g' class='grid'/>", x.at(tick), top,
                  x.at(tick), height - bottom);
     svg += print("<text x='%.1f' y='%g' text-anchor='middle'>%g</text>", x.at(tick),
                  height - bottom + 18, tick);
   }
   for (const double tick : ticks(y)) {
-    svg += print("<line x1='%g' y1='%.1f' x2='%g' y2='%.1f' stroke='#ddd'/>", left, y.at(tick),
+    svg += print("<line x1='%g' y1='%.1f' x2='%g' y2='%.1f' class='grid'/>", left, y.at(tick),
                  width - right, y.at(tick));
     svg += print("<text x='%g' y='%.1f' text-anchor='end'>%s</text>", left - 6, y.at(tick) + 4,
                  readable_value(tick, unit).c_str());
@@ -131,10 +131,9 @@ std::string tradeoff_plot(const std::vector<TradeoffMark>& all, const std::strin
   if (marks.empty()) return "<p>No run gave an error to show.</p>";
   if (tolerance > 0) errors.push_back(tolerance);
   const Axis x = axis_of(seconds, left, width - right), y = axis_of(errors, height - bottom, top);
-  std::string svg = print(
-      "<svg viewBox='0 0 %g %g' role='img' aria-label='Error against seconds' font-size='12' "
-      "font-family='sans-serif'>",
-      width, height);
+  std::string svg =
+      print("<svg class='plot' viewBox='0 0 %g %g' role='img' aria-label='Error against seconds'>",
+            width, height);
   svg += frame(x, y, figure, unit) + front_line(marks, x, y);
   if (tolerance > 0)
     svg += print(
