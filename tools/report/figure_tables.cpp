@@ -31,6 +31,16 @@ std::string interval_cell(const ordered_json& m, const std::string& unit) {
   return raw_cell(exact(interval[0], unit) + " to " + exact(interval[1], unit), true);
 }
 
+// On narrow screens a name may break behind its underscores.
+std::string name_cell(const ordered_json& m) {
+  std::string name;
+  for (const char c : escaped(m.value("name", ""))) {
+    name += c;
+    if (c == '_') name += "<wbr>";
+  }
+  return "<td class=\"name\">" + name + "</td>";
+}
+
 std::string shown_relation(const std::string& relation) {
   return relation == "<=" ? "≤" : relation == ">=" ? "≥" : relation == "==" ? "=" : "";
 }
@@ -57,7 +67,7 @@ bool is_close(const ordered_json& m) {
 
 std::string verdict_cell(const ordered_json& m) {
   if (!is_limited(m)) return "<td></td>";
-  return "<td>" + tag(m.value("pass", false)) +
+  return "<td class=\"verdicts\">" + tag(m.value("pass", false)) +
          (is_close(m) ? " <span class=\"quiet\">within its sampling</span>" : "") + "</td>";
 }
 
@@ -106,15 +116,16 @@ std::string limit_table(const ordered_json& measurements) {
   for (const auto& m : measurements) {
     if (!is_limited(m)) continue;
     const std::string unit = m.value("unit", "");
-    rows += "<tr class=\"limited\"><td class=\"name\">" + escaped(m.value("name", "")) + "</td>" +
-            exact_cell(m.at("value"), unit) + interval_cell(m, unit) + limit_cell(m, unit) +
-            raw_cell(limit_bar(share_of_limit(m), m.value("pass", false))) + verdict_cell(m) +
+    rows += "<tr class=\"limited\">" + name_cell(m) + verdict_cell(m) +
+            exact_cell(m.at("value"), unit) + limit_cell(m, unit) +
+            raw_cell(limit_bar(share_of_limit(m), m.value("pass", false))) +
+            interval_cell(m, unit) +
             "</tr><tr class=\"reason\"><td colspan=\"6\"><p>Why this limit: " +
             escaped(m.value("reason", "")) + "</p></td></tr>\n";
   }
   if (rows.empty()) return "";
   return table("The limits and what was measured; the bar shows how much of a limit is used.",
-               {"figure", "#value", "#95 % interval", "#limit", "used", "verdict"}, rows);
+               {"figure", "verdict", "#value", "#limit", "used", "#95 % interval"}, rows);
 }
 
 std::string figure_table(const std::string& caption, const ordered_json& measurements) {
@@ -123,8 +134,7 @@ std::string figure_table(const std::string& caption, const ordered_json& measure
   std::string rows;
   for (const auto& m : measurements) {
     const std::string unit = m.value("unit", "");
-    rows += "<tr><td class=\"name\">" + escaped(m.value("name", "")) + "</td>" +
-            exact_cell(m.at("value"), unit) + interval_cell(m, unit);
+    rows += "<tr>" + name_cell(m) + exact_cell(m.at("value"), unit) + interval_cell(m, unit);
     if (predicted) rows += exact_cell(m.value("predicted", ordered_json()), unit);
     rows += limit_cell(m, unit) + verdict_cell(m) +
             cell(m.value("over", "") + " (" + std::to_string(m.value("count", 0ul)) + ")") +

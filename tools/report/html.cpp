@@ -144,7 +144,7 @@ std::string table(const std::string& caption, const std::vector<std::string>& he
             escaped(heading.substr(number ? 1 : 0)) + "</th>";
   }
   return "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"" + escaped(caption) +
-         "\"><table><caption>" + escaped(caption) + "</caption><thead><tr>" + head +
+         "\"><table><caption><span>" + escaped(caption) + "</span></caption><thead><tr>" + head +
          "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
 }
 

@@ -14,7 +14,8 @@ class Orbit {
   constructor(camera, canvas, changed) {
     Object.assign(this, {camera, canvas, changed, pointers: new Map()});
     this.target = new THREE.Vector3();
-    this.home = {centre: new THREE.Vector3(), radius: 1};
+    this.home = [new THREE.Vector3()];
+    this.radius = 1;
     [this.azimuth, this.elevation] = orbitSides.oblique;
     canvas.addEventListener('pointerdown', event => this.press(event));
     canvas.addEventListener('pointermove', event => this.drag(event));
@@ -25,29 +26,42 @@ class Orbit {
     canvas.addEventListener('keydown', event => this.key(event));
   }
 
-  // Brings a ball into view; Home comes back to it.
-  frame(centre, radius) {
-    this.home = {centre: centre.clone(), radius};
-    this.target.copy(centre);
-    const half = Math.min(1, this.camera.aspect) * Math.tan(this.camera.fov * Math.PI / 360);
-    this.distance = radius / Math.sin(Math.atan(half));
+  // Brings these places into view, from the present side; Home comes back to them.
+  frame(places) {
+    this.home = places;
+    const box = new THREE.Box3().setFromPoints(places);
+    box.getCenter(this.target);
+    this.radius = Math.max(box.min.distanceTo(box.max) / 2, 1e-9);
+    const {right, up, away} = this.axes();
+    const high = Math.tan(this.camera.fov * Math.PI / 360), wide = high * this.camera.aspect;
+    this.distance = 1.08 * Math.max(...places.map(place => {
+      const from = place.clone().sub(this.target);
+      const across = Math.max(Math.abs(from.dot(right)) / wide, Math.abs(from.dot(up)) / high);
+      return from.dot(away) + across;
+    }));
     this.place();
   }
 
   look(side) {
     [this.azimuth, this.elevation] = orbitSides[side];
-    this.frame(this.home.centre, this.home.radius);
+    this.frame(this.home);
+  }
+
+  // Seen from a pole the azimuth still tells which side is up.
+  axes() {
+    const [ca, sa] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
+    const [ce, se] = [Math.cos(this.elevation), Math.sin(this.elevation)];
+    return {right: new THREE.Vector3(-sa, ca, 0), up: new THREE.Vector3(-se * ca, -se * sa, ce),
+            away: new THREE.Vector3(ce * ca, ce * sa, se)};
   }
 
   place() {
-    const c = Math.cos(this.elevation), s = Math.sin(this.elevation);
-    const away = new THREE.Vector3(c * Math.cos(this.azimuth), c * Math.sin(this.azimuth), s);
+    const {up, away} = this.axes();
     this.camera.position.copy(this.target).addScaledVector(away, this.distance);
-    // Seen from a pole the azimuth still tells which side is up.
-    this.camera.up.set(-s * Math.cos(this.azimuth), -s * Math.sin(this.azimuth), c);
+    this.camera.up.copy(up);
     this.camera.lookAt(this.target);
     this.camera.near = this.distance / 200;
-    this.camera.far = this.distance + 20 * this.home.radius;
+    this.camera.far = this.distance + 20 * this.radius;
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
     this.changed();
@@ -63,15 +77,13 @@ class Orbit {
   shift(across, down) {
     const metres = 2 * this.distance * Math.tan(this.camera.fov * Math.PI / 360) /
         this.canvas.clientHeight;
-    const axes = this.camera.matrixWorld.elements;
-    this.target.addScaledVector(new THREE.Vector3(axes[0], axes[1], axes[2]), -across * metres);
-    this.target.addScaledVector(new THREE.Vector3(axes[4], axes[5], axes[6]), down * metres);
+    const {right, up} = this.axes();
+    this.target.addScaledVector(right, -across * metres).addScaledVector(up, down * metres);
     this.place();
   }
 
   zoom(factor) {
-    this.distance = Math.max(this.home.radius / 50, Math.min(20 * this.home.radius,
-                                                             this.distance * factor));
+    this.distance = Math.max(this.radius / 50, Math.min(20 * this.radius, this.distance * factor));
     this.place();
   }
 

@@ -16,7 +16,7 @@
 namespace scan {
 namespace {
 
-constexpr double most_steps = 65535;
+constexpr std::uint16_t most_coarse_step = 255;
 
 // Every third bit.
 std::uint64_t spread(std::uint64_t v) {
@@ -31,10 +31,10 @@ struct Channel {
 };
 
 Channel channel(const std::string& name, std::size_t count,
-                const std::function<double(std::size_t)>& value) {
+                const std::function<double(std::size_t)>& value, std::uint16_t most_step = 65535) {
   std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i) values[i] = value(i);
-  return {name, quantised(values)};
+  return {name, quantised(values, most_step)};
 }
 
 double sign(double v) {
@@ -58,17 +58,17 @@ std::vector<Channel> channels_of(const PagePoints& p) {
                                [&](std::size_t i) { return p.points[i][axis]; }));
   if (!p.normals.empty())
     for (int axis = 0; axis < 2; ++axis) {
-      // 256 steps are enough for shading and pack into half the room.
-      Channel normal{axis == 0 ? "normal_u" : "normal_v", {-1, 2.0 / 255, {}}};
+      Channel normal{axis == 0 ? "normal_u" : "normal_v", {-1, 2.0 / most_coarse_step, {}}};
       for (const Eigen::Vector3d& n : p.normals)
-        normal.values.steps.push_back(
-            static_cast<std::uint16_t>(std::lround((octahedral(n)[axis] + 1) / 2 * 255)));
+        normal.values.steps.push_back(static_cast<std::uint16_t>(
+            std::lround((octahedral(n)[axis] + 1) / 2 * most_coarse_step)));
       channels.push_back(std::move(normal));
     }
   if (!p.deviations_m.empty())
     channels.push_back(channel("deviation", count, [&](auto i) { return p.deviations_m[i]; }));
   if (!p.support_m.empty())
-    channels.push_back(channel("support", count, [&](auto i) { return p.support_m[i]; }));
+    channels.push_back(channel(
+        "support", count, [&](auto i) { return p.support_m[i]; }, most_coarse_step));
   return channels;
 }
 
@@ -125,12 +125,12 @@ std::vector<std::uint32_t> thinned(std::size_t size, std::span<const double> wei
   return chosen;
 }
 
-Quantised quantised(std::span<const double> values) {
+Quantised quantised(std::span<const double> values, std::uint16_t most_step) {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const double v : values)
     if (std::isfinite(v)) least = std::min(least, v), most = std::max(most, v);
   Quantised result;
-  if (least <= most) result = {least, (most - least) / most_steps, {}};
+  if (least <= most) result = {least, (most - least) / most_step, {}};
   for (const double v : values)
     result.steps.push_back(
         std::isfinite(v) && result.step > 0

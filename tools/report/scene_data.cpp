@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "tools/report/colour_map.h"
 #include "tools/report/picture.h"
@@ -46,11 +48,16 @@ ordered_json scan_json(const Scan& scan, std::size_t most) {
   const PointCloud cloud = subset(scan.cloud, finite);
   const auto picked = thinned(cloud.size(), {}, most, 0);
   Eigen::Vector3d aim = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : cloud.points) aim += (point - scan.viewpoint).normalized();
+  double reach_m = 0;
+  for (const Eigen::Vector3d& point : cloud.points) {
+    aim += (point - scan.viewpoint).normalized();
+    reach_m += (point - scan.viewpoint).norm() / static_cast<double>(cloud.size());
+  }
   return {{"name", scan.name},
           {"points", packed_points({.points = chosen(cloud.points, picked),
                                     .normals = chosen(cloud.normals, picked)})},
           {"viewpoint_m", numbers(scan.viewpoint)},
+          {"reach_m", reach_m},
           {"aim", numbers(aim.norm() > 0 ? Eigen::Vector3d(aim.normalized())
                                          : Eigen::Vector3d(Eigen::Vector3d::UnitZ()))}};
 }
@@ -59,6 +66,13 @@ Eigen::Vector3d middle(const PointCloud& cloud) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : cloud.points) sum += point;
   return cloud.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(cloud.size()));
+}
+
+// With the eight digits that a picture needs.
+double shortened(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.8g", value);
+  return std::strtod(text, nullptr);
 }
 
 double off_m(const PoseStep& step, const RunRecord& record,
@@ -75,7 +89,10 @@ ordered_json steps_json(const RunRecord& record) {
   std::vector<Eigen::Vector3d> middles;
   for (const Scan& scan : record.scans)
     middles.push_back(middle(subset(scan.cloud, finite_points(scan.cloud))));
-  const ordered_json traced = trace_json(steps);
+  ordered_json traced = trace_json(steps);
+  for (auto& step : traced.at("steps"))
+    for (auto& pose : step.at("world_from_scan"))
+      for (auto& number : pose) number = shortened(number.get<double>());
   ordered_json list = ordered_json::array();
   for (std::size_t k = 0; k < steps.size(); ++k)
     list.push_back({{"step", steps[k].step},

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int picture_width_px = 800, picture_height_px = 500;
+constexpr int picture_width_px = 640, picture_height_px = 400;
 constexpr std::string_view library = "three.min.js";
 // In the order in which they run.
 constexpr std::array<std::string_view, 5> own_scripts = {"unpack.js", "orbit.js", "cloud.js",

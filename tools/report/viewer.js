@@ -14,9 +14,8 @@ class Viewer {
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(35, 1, 0.1, 100);
     this.orbit = new Orbit(this.camera, this.canvas, () => this.draw());
-    const corners = data.box.map(corner => new THREE.Vector3(...corner));
-    this.centre = corners[0].clone().add(corners[1]).multiplyScalar(0.5);
-    this.radius = Math.max(corners[0].distanceTo(corners[1]) / 2, 1e-9);
+    this.corners = [0, 1, 2, 3, 4, 5, 6, 7].map(k => new THREE.Vector3(
+        data.box[k & 1][0], data.box[k >> 1 & 1][1], data.box[k >> 2][2]));
     this.step = data.steps.length - 1;
   }
 
@@ -30,7 +29,7 @@ class Viewer {
       const group = new THREE.Group();
       group.matrixAutoUpdate = false;
       group.cloud = discCloud(await unpackedPoints(scan.points));
-      group.glyph = scannerGlyph(scan.viewpoint_m, scan.aim, 0.35 * this.radius, scanColour(i));
+      group.glyph = scannerGlyph(scan.viewpoint_m, scan.aim, 0.18 * scan.reach_m, scanColour(i));
       group.glyph.visible = false;
       paintCloud(group.cloud, () => scanColour(i));
       group.add(group.cloud, group.glyph);
@@ -73,9 +72,11 @@ class Viewer {
   drawNow() {
     const perMetre = this.renderer.domElement.height /
         (2 * Math.tan(this.camera.fov * Math.PI / 360));
-    const clouds = this.scans.map(group => group.cloud).concat(this.surface || []);
-    for (const cloud of clouds)
-      cloud.material.uniforms.diameter.value = 1.9 * cloud.userData.spacing * perMetre;
+    const size = (cloud, spacings) => {
+      cloud.material.uniforms.diameter.value = spacings * cloud.userData.spacing * perMetre;
+    };
+    if (this.surface) size(this.surface, 1.9);  // closed
+    for (const group of this.scans) size(group.cloud, 1.1);  // several lie on each other
     this.renderer.render(this.scene, this.camera);
     this.placePins();
     document.body.dataset.frames = Number(document.body.dataset.frames || 0) + 1;
@@ -149,13 +150,13 @@ class Viewer {
 
   // With the scanners the view is wide enough to hold them.
   showScanners(shown) {
-    const sphere = new THREE.Sphere(this.centre.clone(), this.radius);
+    const places = this.corners.slice();
     this.scans.forEach((group, i) => {
       group.glyph.visible = shown;
       const at = new THREE.Vector3(...this.data.scans[i].viewpoint_m).applyMatrix4(group.matrix);
-      if (shown) sphere.radius = Math.max(sphere.radius, 1.1 * at.distanceTo(this.centre));
+      if (shown) places.push(at);
     });
-    this.orbit.frame(sphere.center, sphere.radius);
+    this.orbit.frame(places);
   }
 }
 
@@ -235,7 +236,7 @@ async function startViewer() {
   if (viewer.scans.length) viewer.setStep(viewer.step);
   chooseColour(viewer, document.querySelector('input[name=colour]').value);
   wire(viewer);
-  viewer.orbit.frame(viewer.centre, viewer.radius);
+  viewer.orbit.frame(viewer.corners);
   document.body.dataset.viewer = 'ready';
 }
 
