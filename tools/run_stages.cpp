@@ -89,8 +89,7 @@ void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Con
   const std::vector<Pose> poses = read_run_poses(run);
   const SurfaceResult result = make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
                                             recipe.reconstruct, console);
-  write_supported_mesh(run / "surface.ply", result.surface, result.support_m,
-                       result.standard_error_m);
+  write_supported_mesh(run / "surface.ply", supported(result));
   write_json(run / "reconstruction.json", surface_json(result));
 }
 

@@ -110,7 +110,7 @@ std::vector<Measurement> measure_files(const Arguments& arguments, Console& cons
   if (holds_triangles(arguments.measured)) {
     const SupportedMesh surface = read_supported_mesh(arguments.measured);
     measurements = surface_error(surface.mesh, truth, options);
-    add(measurements, measure_shape(surface, truth, arguments.threshold_m));
+    add(measurements, measure_shape(surface, truth));
     if (!arguments.picture.empty()) write_picture(arguments.picture, surface.mesh, truth);
     points = surface.mesh.vertices;
   } else {

@@ -3,6 +3,7 @@
 #include "tools/verify_stage.h"
 
 #include "libscan/core/error.h"
+#include "libscan/reconstruct/surface_result.h"
 #include "libscan/verify/pose_error.h"
 #include "libscan/verify/self_intersection.h"
 #include "libscan/verify/size_error.h"
@@ -99,20 +100,20 @@ std::vector<Eigen::Vector3d> corners_of(const Bounds& box) {
   return corners;
 }
 
-std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueSurface& truth,
-                                       double threshold_m) {
+std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueSurface& truth) {
   std::vector<Measurement> figures = size_error(surface.mesh, truth);
   add(figures, topology(surface.mesh));
   if (auto crossings = self_intersection(surface.mesh)) figures.push_back(std::move(*crossings));
-  if (surface.support_m.empty()) return figures;
-  const double most_support_m =
-      threshold_m > 0 ? threshold_m : bounds_of(surface.mesh.vertices).diagonal().norm() / 100;
-  figures.push_back(unsupported_area(surface.mesh, surface.support_m, most_support_m));
+  if (surface.support_m.empty() || surface.data_spacing_m.empty()) return figures;
+  std::vector<double> spacings;
+  for (std::size_t i = 0; i < surface.support_m.size(); ++i)
+    spacings.push_back(surface.support_m[i] / surface.data_spacing_m[i]);
+  figures.push_back(unsupported_area(surface.mesh, spacings, supported_within_spacings));
   if (surface.standard_error_m.empty()) return figures;
   add(figures, stated_uncertainty("surface",
                                   normalised_deviations(deviations_m(surface.mesh.vertices, truth),
-                                                        surface.standard_error_m, surface.support_m,
-                                                        most_support_m),
+                                                        surface.standard_error_m, spacings,
+                                                        supported_within_spacings),
                                   "supported vertices; errors of the poses count"));
   return figures;
 }
@@ -135,7 +136,7 @@ std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth
     options.seen_distance_m = settings.seen_distance_m;
   }
   std::vector<Measurement> measurements = surface_error(surface.mesh, truth.surface, options);
-  add(measurements, measure_shape(surface, truth.surface, settings.f_score_threshold_m));
+  add(measurements, measure_shape(surface, truth.surface));
   add(measurements, measure_poses(result, truth));
   add(measurements, measure_ranges(result.scans, truth));
   return measurements;

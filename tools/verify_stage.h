@@ -26,10 +26,8 @@ struct RunResult {
 void add(std::vector<Measurement>& to, std::vector<Measurement> more);
 
 // Sizes, topology, self-intersections and, where the vertices know them, unsupported area and the
-// honesty of the standard errors. Data farther than `threshold_m` do not support (0: a hundredth of
-// the surface's diagonal).
-std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueSurface& truth,
-                                       double threshold_m);
+// honesty of the standard errors.
+std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueSurface& truth);
 
 // The corners of a box: where target registration errors are felt.
 std::vector<Eigen::Vector3d> corners_of(const Bounds& box);

@@ -75,14 +75,12 @@ std::vector<std::optional<Matrix6>> joint_covariances(std::span<const JointForm>
   if (system.rows() == 0) return covariances;
   const WithholdingSolver solver(matrix_of(system, system.sum_of(details)), system.reduced(weak));
   const JointMatrix scatter = matrix_of(system, shared_scatter(system, forms, details, weak));
+  const std::vector<Matrix6> blocks = solver.sandwich_blocks(scatter);
   Matrix6 units = Matrix6::Identity();
   units.bottomRightCorner<3, 3>() *= frame.size_m;
   for (std::size_t i = 0; i < covariances.size(); ++i) {
     if (!system.has(i) || weak_motions_of(i, weak).cols() > 0) continue;
-    Eigen::MatrixXd reply = Eigen::MatrixXd::Zero(system.rows(), 6);
-    reply.middleRows<6>(system.row(i)).setIdentity();
-    reply = solver.solve(reply);
-    const Matrix6 covariance = reply.transpose() * (scatter * reply);
+    const Matrix6& covariance = blocks[std::size_t(system.row(i) / 6)];
     covariances[i] = units * (0.5 * (covariance + covariance.transpose())) * units;
   }
   return covariances;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "libscan/align/selected_inverse.h"
 #include "libscan/core/error.h"
 
 namespace scan {
@@ -44,13 +45,16 @@ JointMatrix matrix_of(const JointSystem& system, const JointEntries& entries) {
   return matrix;
 }
 
-// A + a share of its diagonal, so that what nothing holds stays where it is.
-std::unique_ptr<JointFactor> damped_factor(const JointMatrix& a, double share) {
-  JointMatrix damped = a;
+JointMatrix damped(const JointMatrix& a, double share) {
+  JointMatrix sum = a;
   const double least = 1e-3 * a.diagonal().mean();
   for (Eigen::Index i = 0; i < a.rows(); ++i)
-    damped.coeffRef(i, i) += share * std::max(a.coeff(i, i), least);
-  auto factor = std::make_unique<JointFactor>(damped);
+    sum.coeffRef(i, i) += share * std::max(a.coeff(i, i), least);
+  return sum;
+}
+
+std::unique_ptr<JointFactor> factor_of(const JointMatrix& a) {
+  auto factor = std::make_unique<JointFactor>(a);
   if (factor->info() != Eigen::Success)
     throw Error(Trouble::computation, "align_scans: the joint system is singular");
   return factor;
@@ -60,7 +64,8 @@ WithholdingSolver::WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak)
     : weak_(std::move(weak)) {
   blocks_ = weak_.cols() > 0 && each_of_one_scan(weak_);
   if (!blocks_) {
-    factor_ = damped_factor(a, rounding_share);
+    held_ = damped(a, rounding_share);
+    factor_ = factor_of(held_);
     if (weak_.cols() == 0) return;
     reply_ = factor_->solve(weak_);
     response_.compute(weak_.transpose() * reply_);
@@ -70,8 +75,9 @@ WithholdingSolver::WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak)
   JointMatrix rest(a.rows(), a.cols());
   rest.setIdentity();
   const double scale = std::max(a.diagonal().mean(), 1e-300);
-  const JointMatrix held = projector_ * a * projector_;
-  factor_ = damped_factor(held + scale * (rest - projector_), rounding_share);
+  const JointMatrix projected = projector_ * a * projector_;
+  held_ = damped(projected + scale * (rest - projector_), rounding_share);
+  factor_ = factor_of(held_);
 }
 
 Eigen::MatrixXd WithholdingSolver::solve(const Eigen::MatrixXd& b) const {
@@ -79,6 +85,23 @@ Eigen::MatrixXd WithholdingSolver::solve(const Eigen::MatrixXd& b) const {
   const Eigen::MatrixXd x = factor_->solve(b);
   if (weak_.cols() == 0) return x;
   return x - reply_ * response_.solve(weak_.transpose() * x);
+}
+
+// With G = F - R K R^T, F the factor's inverse, R = F W and K = (W^T R)^-1, G M G is F M F less
+// R K U^T and its transpose, U = F M R, plus R K (R^T M R) K R^T.
+std::vector<Matrix6> WithholdingSolver::sandwich_blocks(const JointMatrix& m) const {
+  if (blocks_) return scan::sandwich_blocks(held_, projector_ * m * projector_);
+  std::vector<Matrix6> blocks = scan::sandwich_blocks(held_, m);
+  if (weak_.cols() == 0) return blocks;
+  const Eigen::MatrixXd spread = m * reply_, u = factor_->solve(spread);
+  const Eigen::MatrixXd both = response_.solve(reply_.transpose());  // K R^T
+  const Eigen::MatrixXd inner = reply_.transpose() * spread;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const Eigen::MatrixXd own = both.middleCols<6>(6 * Eigen::Index(k));
+    const Matrix6 cross = u.middleRows<6>(6 * Eigen::Index(k)) * own;
+    blocks[k] += own.transpose() * inner * own - cross - cross.transpose();
+  }
+  return blocks;
 }
 
 }  // namespace scan

@@ -47,7 +47,7 @@ double chance_excess(double planes) {
 // The `count` least v^T A v / v^T G v, by inverse iteration on a subspace with Rayleigh-Ritz.
 Eigen::MatrixXd least_motions(const JointMatrix& a, const JointMatrix& g, Eigen::Index count) {
   const Eigen::Index columns = std::min(a.rows(), count + spare_columns);
-  const auto factor = damped_factor(a, rounding_share);
+  const auto factor = factor_of(damped(a, rounding_share));
   Eigen::MatrixXd x(a.rows(), columns);  // any start that has a part of all will do
   for (Eigen::Index i = 0; i < x.rows(); ++i)
     for (Eigen::Index k = 0; k < columns; ++k)

@@ -13,30 +13,28 @@ bool is_ply(const std::filesystem::path& path) {
   return lower_case(path.extension().string()) == ".ply";
 }
 
-void add_column(Ply& ply, const char* name, std::span<const double> values) {
-  if (values.empty()) return;
-  ply.elements.front().properties.push_back(
-      {name, std::vector<double>(values.begin(), values.end()), {}, false});
+void add_column(Ply& ply, const char* name, const std::vector<double>& values) {
+  if (!values.empty()) ply.elements.front().properties.push_back({name, values, {}, false});
 }
 
 }  // namespace
 
-void write_supported_mesh(const std::filesystem::path& path, const Mesh& mesh,
-                          std::span<const double> support_m,
-                          std::span<const double> standard_error_m) {
-  if (!is_ply(path)) return write_mesh(path, mesh);
-  Ply ply = ply_from(mesh);  // its first element is the vertex
-  add_column(ply, "support_m", support_m);
-  add_column(ply, "standard_error_m", standard_error_m);
+void write_supported_mesh(const std::filesystem::path& path, const SupportedMesh& surface) {
+  if (!is_ply(path)) return write_mesh(path, surface.mesh);
+  Ply ply = ply_from(surface.mesh);  // its first element is the vertex
+  add_column(ply, "support_m", surface.support_m);
+  add_column(ply, "data_spacing_m", surface.data_spacing_m);
+  add_column(ply, "standard_error_m", surface.standard_error_m);
   write_ply(path, ply);
 }
 
 SupportedMesh read_supported_mesh(const std::filesystem::path& path) {
-  SupportedMesh supported{read_mesh(path), {}, {}};
+  SupportedMesh supported{read_mesh(path), {}, {}, {}};
   if (!is_ply(path)) return supported;
   const Ply ply = read_ply(path);
   const PlyElement* vertex = ply.find("vertex");
   supported.support_m = vertex->numbers("support_m");
+  supported.data_spacing_m = vertex->numbers("data_spacing_m");
   supported.standard_error_m = vertex->numbers("standard_error_m");
   return supported;
 }

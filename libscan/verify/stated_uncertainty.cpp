@@ -74,15 +74,17 @@ NormalisedErrors normalised_pose_errors(std::span<const Pose> estimated,
 
 NormalisedErrors normalised_deviations(std::span<const double> deviations_m,
                                        std::span<const double> standard_errors_m,
-                                       std::span<const double> support_m, double most_support_m) {
-  if (standard_errors_m.size() != deviations_m.size() || support_m.size() != deviations_m.size())
-    throw Error(Trouble::input, "surface uncertainty: " + std::to_string(deviations_m.size()) +
-                                    " deviations, " + std::to_string(standard_errors_m.size()) +
-                                    " standard errors and " + std::to_string(support_m.size()) +
-                                    " distances to the data");
+                                       std::span<const double> support_spacings,
+                                       double most_spacings) {
+  if (standard_errors_m.size() != deviations_m.size() ||
+      support_spacings.size() != deviations_m.size())
+    throw Error(Trouble::input,
+                "surface uncertainty: " + std::to_string(deviations_m.size()) + " deviations, " +
+                    std::to_string(standard_errors_m.size()) + " standard errors and " +
+                    std::to_string(support_spacings.size()) + " distances to the data");
   NormalisedErrors errors;
   for (std::size_t i = 0; i < deviations_m.size(); ++i) {
-    if (!(standard_errors_m[i] > 0) || !(support_m[i] <= most_support_m)) continue;
+    if (!(standard_errors_m[i] > 0) || !(support_spacings[i] <= most_spacings)) continue;
     const double ratio = deviations_m[i] / standard_errors_m[i];
     errors.squares.push_back(ratio * ratio);
   }

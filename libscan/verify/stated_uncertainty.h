@@ -51,10 +51,11 @@ NormalisedErrors normalised_pose_errors(std::span<const Pose> estimated,
                                         std::size_t anchor);
 
 // One degree of freedom: deviations over standard errors, where these are positive and the support
-// (distance to the nearest data) is at most `most_support_m`. Throws scan::Error (input) for lists
-// of different lengths.
+// (distance to the nearest data over its spacing) is at most `most_spacings`. Throws scan::Error
+// (input) for lists of different lengths.
 NormalisedErrors normalised_deviations(std::span<const double> deviations_m,
                                        std::span<const double> standard_errors_m,
-                                       std::span<const double> support_m, double most_support_m);
+                                       std::span<const double> support_spacings,
+                                       double most_spacings);
 
 }  // namespace scan

@@ -76,10 +76,10 @@ std::vector<Measurement> range_error(const PointCloud& cloud_in_scanner,
                                      std::span<const std::uint32_t> ray, const ScanTruth& truth);
 
 // unsupported_area: share of the area that lies in triangles with a vertex farther from every data
-// point than `most_support_m`; `support_m` has each vertex' distance to the nearest one. Throws
-// scan::Error (input) for lists of different lengths.
-Measurement unsupported_area(const Mesh& mesh, std::span<const double> support_m,
-                             double most_support_m);
+// point than `most_spacings`; `support_spacings` has each vertex' distance to the nearest one over
+// the data's spacing there. Throws scan::Error (input) for lists of different lengths.
+Measurement unsupported_area(const Mesh& mesh, std::span<const double> support_spacings,
+                             int most_spacings);
 
 // components, boundary_edges, non_manifold_edges, genus (NaN unless closed and manifold).
 std::vector<Measurement> topology(const Mesh& mesh);

@@ -29,18 +29,18 @@ std::vector<Measurement> topology(const Mesh& mesh) {
              census.components)};
 }
 
-Measurement unsupported_area(const Mesh& mesh, std::span<const double> support_m,
-                             double most_support_m) {
+Measurement unsupported_area(const Mesh& mesh, std::span<const double> support_spacings,
+                             int most_spacings) {
   check(mesh);
-  if (support_m.size() != mesh.vertices.size())
-    throw Error(Trouble::input, "unsupported area: " + std::to_string(support_m.size()) +
+  if (support_spacings.size() != mesh.vertices.size())
+    throw Error(Trouble::input, "unsupported area: " + std::to_string(support_spacings.size()) +
                                     " distances to the data for " +
                                     std::to_string(mesh.vertices.size()) + " vertices");
   double unsupported = 0, all = 0;
   for (const Triangle& triangle : mesh.triangles) {
     const double area = area_vector(mesh, triangle).norm();
     const bool is_supported = std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
-      return support_m[v] <= most_support_m;
+      return support_spacings[v] <= most_spacings;
     });
     if (!is_supported) unsupported += area;
     all += area;
@@ -48,7 +48,8 @@ Measurement unsupported_area(const Mesh& mesh, std::span<const double> support_m
   return {.name = "unsupported_area",
           .value = unsupported / all,
           .unit = "1",
-          .over = "area, data within " + std::to_string(most_support_m) + " m",
+          .over = "area; supported where the nearest data are within " +
+                  std::to_string(most_spacings) + " of their spacings",
           .count = mesh.triangles.size()};
 }
 

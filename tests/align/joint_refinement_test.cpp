@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "libscan/align/joint_system.h"
+#include "libscan/align/joint_solver.h"
 #include "libscan/align/shared_noise.h"
 #include "libscan/core/random.h"
 
@@ -242,6 +242,39 @@ TEST(JointCovariances, OfAChainAddUpFromTheAnchor) {
   const double times = covariances[1]->trace() / link.trace();
   EXPECT_GE(times, 1);
   EXPECT_LT((*covariances[1] - times * link).norm(), 1e-7 * times * link.norm());
+}
+
+// With a motion of two scans together withheld: by Lagrange's equations, whose inverse's first
+// block answers pulls with steps.
+TEST(WithholdingSolver, SandwichesWhatIsNotWithheld) {
+  const Ring r = ring();
+  std::vector<JointDetail> details(4);
+  for (std::size_t k = 0; k < 4; ++k) {
+    RandomStream random(8, 0, k);
+    details[k].curvature = r.forms[k].a;
+    for (std::int64_t place = 0; place < 20; ++place)
+      details[k].pulls.push_back({{place, std::int64_t(k), 0}, random_row(random)});
+  }
+  JointBasis weak = JointBasis::Zero(24, 1);
+  weak(9, 0) = 0.6, weak(20, 0) = 0.8;
+  const JointFrame frame = frame_of(4);
+  const JointSystem system(r.forms, frame);
+  Eigen::MatrixXd saddle = Eigen::MatrixXd::Zero(19, 19);
+  saddle.topLeftCorner<18, 18>() = r.a;
+  saddle.topRightCorner<18, 1>() = weak.bottomRows<18>();
+  saddle.bottomLeftCorner<1, 18>() = weak.bottomRows<18>().transpose();
+  const Eigen::MatrixXd reply = saddle.inverse().topLeftCorner<18, 18>();
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(18, 18);
+  const std::vector<double> ones(4, 1);
+  for (const JointEntry& entry : system.scatter(system.pulls_by_place(details, ones)))
+    scatter(entry.row(), entry.col()) += entry.value();
+  const Eigen::MatrixXd expected = reply * scatter * reply;
+  const JointMatrix sparse = scatter.sparseView();
+  const WithholdingSolver solver(JointMatrix(r.a.sparseView()), system.reduced(weak));
+  const std::vector<Matrix6> blocks = solver.sandwich_blocks(sparse);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    EXPECT_LT((blocks[std::size_t(k)] - expected.block<6, 6>(6 * k, 6 * k)).norm(),
+              1e-7 * expected.norm());
 }
 
 // A row that sways as a whole does not move; one whose last scan alone moves does, by x^T A x.

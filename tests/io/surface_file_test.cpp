@@ -14,38 +14,40 @@ namespace {
 
 TEST(SupportedMesh, ComesBackToTheBit) {
   const TemporaryFolder folder;
-  const Mesh mesh = torus(3, 1, 7, 5);
-  std::vector<double> support_m, standard_error_m;
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    support_m.push_back(1.0 / (3 + static_cast<double>(i)));
-    standard_error_m.push_back(1e-5 / (7 + static_cast<double>(i)));
+  SupportedMesh surface{torus(3, 1, 7, 5), {}, {}, {}};
+  for (std::size_t i = 0; i < surface.mesh.vertices.size(); ++i) {
+    surface.support_m.push_back(1.0 / (3 + static_cast<double>(i)));
+    surface.data_spacing_m.push_back(1.0 / (11 + static_cast<double>(i)));
+    surface.standard_error_m.push_back(1e-5 / (7 + static_cast<double>(i)));
   }
   for (const char* name : {"surface.ply", "SURFACE.PLY"}) {
-    write_supported_mesh(folder / name, mesh, support_m, standard_error_m);
+    write_supported_mesh(folder / name, surface);
     const SupportedMesh read = read_supported_mesh(folder / name);
-    EXPECT_EQ(read.mesh.vertices, mesh.vertices);
-    EXPECT_EQ(read.mesh.triangles, mesh.triangles);
-    EXPECT_EQ(read.support_m, support_m);
-    EXPECT_EQ(read.standard_error_m, standard_error_m);
+    EXPECT_EQ(read.mesh.vertices, surface.mesh.vertices);
+    EXPECT_EQ(read.mesh.triangles, surface.mesh.triangles);
+    EXPECT_EQ(read.support_m, surface.support_m);
+    EXPECT_EQ(read.data_spacing_m, surface.data_spacing_m);
+    EXPECT_EQ(read.standard_error_m, surface.standard_error_m);
   }
 }
 
 TEST(SupportedMesh, WithoutListsIsAPlainMesh) {
   const TemporaryFolder folder;
-  const Mesh mesh = cube(1);
+  const SupportedMesh plain{cube(1), {}, {}, {}};
   for (const char* name : {"surface.ply", "surface.off"}) {
-    write_supported_mesh(folder / name, mesh, {}, {});
+    write_supported_mesh(folder / name, plain);
     const SupportedMesh read = read_supported_mesh(folder / name);
-    EXPECT_EQ(read.mesh.vertices, mesh.vertices);
+    EXPECT_EQ(read.mesh.vertices, plain.mesh.vertices);
     EXPECT_TRUE(read.support_m.empty());
+    EXPECT_TRUE(read.data_spacing_m.empty());
     EXPECT_TRUE(read.standard_error_m.empty());
   }
 }
 
 TEST(SupportedMesh, RefusesListsOfOtherLength) {
   const TemporaryFolder folder;
-  const std::vector<double> one{1};
-  error_of([&] { write_supported_mesh(folder / "surface.ply", cube(1), one, {}); });
+  const SupportedMesh wrong{cube(1), {1}, {}, {}};
+  error_of([&] { write_supported_mesh(folder / "surface.ply", wrong); });
 }
 
 }  // namespace

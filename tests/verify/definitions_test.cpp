@@ -28,8 +28,8 @@ TEST(Definition, IsThereForEachSurfaceFigure) {
   expect_defined(surface_error(mesh, truth, {.samples = 100}));
   expect_defined(size_error(mesh, truth));
   expect_defined(topology(mesh));
-  const std::vector<double> support_m(mesh.vertices.size());
-  expect_defined({unsupported_area(mesh, support_m, 1)});
+  const std::vector<double> spacings(mesh.vertices.size());
+  expect_defined({unsupported_area(mesh, spacings, 1)});
   if (const auto crossings = self_intersection(mesh)) expect_defined({*crossings});
 }
 

@@ -32,16 +32,16 @@ TEST(Topology, OfAnOpenMeshHasNoGenus) {
 // A cube of 12 equal triangles; at a corner meet 4 or 5 of them.
 TEST(UnsupportedArea, IsThatOfTrianglesAwayFromData) {
   const Mesh mesh = cube(1);
-  std::vector<double> support_m(mesh.vertices.size(), 0.1);
-  EXPECT_EQ(unsupported_area(mesh, support_m, 0.1).value, 0);
-  EXPECT_EQ(unsupported_area(mesh, support_m, 0.09).value, 1);
-  support_m[0] = 0.2;
+  std::vector<double> spacings(mesh.vertices.size(), 1);
+  EXPECT_EQ(unsupported_area(mesh, spacings, 1).value, 0);
+  EXPECT_EQ(unsupported_area(mesh, spacings, 0).value, 1);
+  spacings[0] = 1.1;
   double at_corner = 0;
   for (const Triangle& t : mesh.triangles) at_corner += t[0] == 0 || t[1] == 0 || t[2] == 0;
-  EXPECT_NEAR(unsupported_area(mesh, support_m, 0.1).value, at_corner / 12, 1e-15);
+  EXPECT_NEAR(unsupported_area(mesh, spacings, 1).value, at_corner / 12, 1e-15);
   EXPECT_GT(at_corner, 0);
-  support_m.pop_back();
-  EXPECT_THROW(unsupported_area(mesh, support_m, 0.1), Error);
+  spacings.pop_back();
+  EXPECT_THROW(unsupported_area(mesh, spacings, 1), Error);
 }
 
 }  // namespace
