@@ -79,6 +79,25 @@ TEST(Acceptance, OfAnIdealPhaseCameraIsRounding) {
   EXPECT_LT(std::abs(figures.spacing_m), 2e-5);
 }
 
+// Samples are rounded to a twentieth of an electron, 0.014 rms, where a pulse of some 200 to 500 at
+// its top stands over four samples: the time is known to 1.5 ns 0.014 / 200 / sqrt(2) = 0.08 ps and
+// the range to 11 um. The form of 400 points may show 6.5 of these, 72 um. Of a cap of 60 degrees
+// the radius is known to 5.6 sigma / sqrt(400), since it and the depth of the centre resemble each
+// other (1 and cos over the disc), the diameter to 6.2 um, four times that at most; centres across
+// the sight to 2 sigma / sqrt(400), their distance to 1.6 um.
+TEST(Acceptance, OfAnIdealLidarIsRounding) {
+  PulsedLidar lidar;
+  lidar.pattern = RasterPattern{.rows = 120, .columns = 160, .height_rad = 0.55, .width_rad = 0.75};
+  lidar.electrons_at_10m = 50;
+  lidar.ambient_electrons = 0;
+  lidar.max_range_m = 5;
+  lidar.sensor = {.gain_e_per_dn = 0.05, .offset_dn = 50, .bits = 16};
+  const Figures figures = bar_figures(lidar, grey);
+  EXPECT_LT(figures.form_m, 7.2e-5);
+  EXPECT_LT(std::abs(figures.size_m), 2.5e-5);
+  EXPECT_LT(std::abs(figures.spacing_m), 6.4e-6);
+}
+
 // A clock that runs 100 ppm fast, so that the device believes in a frequency 100 ppm too low, makes
 // every range, and with it every length, 100 ppm too long (d = c phi / 4 pi f). The frames are the
 // same, so rounding cancels in the difference but for its share of 1e-4.

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// What an alignment states of its poses comes back from the run folder.
+#include "tools/run_files.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "libscan/core/error.h"
+#include "libscan/io/json_output.h"
+#include "tests/tools/program.h"
+
+namespace scan {
+namespace {
+
+TEST(RunFiles, StatedPosesComeBackToTheBit) {
+  const test::Folder folder;
+  MultiviewResult result;
+  result.scans.resize(3);
+  Matrix6 covariance = Matrix6::Identity() / 3;
+  covariance(0, 5) = covariance(5, 0) = 1e-7 / 7;
+  result.scans[1].covariance = covariance;
+  result.scans[1].covariance_centre = Eigen::Vector3d(0.1, -1e6 / 3, 7);
+  const std::vector<std::string> files{"a", "b", "c"};
+  write_json(folder / "alignment.json", alignment_json(files, result, {}));
+  const auto stated = read_run_stated_poses(folder.path());
+  ASSERT_EQ(stated.size(), 3u);
+  EXPECT_FALSE(stated[0].has_value());
+  ASSERT_TRUE(stated[1].has_value());
+  EXPECT_EQ(stated[1]->covariance, covariance);
+  EXPECT_EQ(stated[1]->centre, result.scans[1].covariance_centre);
+  EXPECT_FALSE(stated[2].has_value());
+}
+
+TEST(RunFiles, WithoutAnAlignmentNothingIsStated) {
+  const test::Folder folder;
+  EXPECT_TRUE(read_run_stated_poses(folder.path()).empty());
+  test::spill(folder / "alignment.json", R"({"scans": [{"file": "a"}]})");
+  EXPECT_THROW(read_run_stated_poses(folder.path()), Error);
+  test::spill(folder / "alignment.json", R"({"scans": [{"covariance": [[1]]}]})");
+  EXPECT_THROW(read_run_stated_poses(folder.path()), Error);
+}
+
+}  // namespace
+}  // namespace scan
