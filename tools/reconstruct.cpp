@@ -8,7 +8,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
-#include "libscan/io/scan_file.h"
+#include "libscan/io/surface_file.h"
 #include "tools/commands.h"
 #include "tools/inputs.h"
 #include "tools/surface_stage.h"
@@ -59,7 +59,7 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
 
   const SurfaceResult result =
       make_surface(joined(scans, poses), joined_viewpoints(scans, poses), settings, console);
-  write_surface(output, result);
+  write_supported_mesh(output, supported(result));
   const auto json = surface_json(result);
   if (settings.method == ReconstructMethod::automatic)
     console.say("method " + result.method + ": " + result.method_reason);

@@ -28,8 +28,25 @@ ordered_json json_if_there(const std::filesystem::path& path) {
   return ordered_json::parse(read_file(path));
 }
 
+void check_is_run(const std::filesystem::path& run) {
+  if (!std::filesystem::exists(recipe_path(run)))
+    throw Error(Trouble::input, run.string() + ": holds no recipe.json; is it a run folder?");
+}
+
+void check_stage_ran(const std::filesystem::path& run, const char* file, const char* stage) {
+  if (!std::filesystem::exists(run / file))
+    throw Error(Trouble::input,
+                run.string() + ": holds no " + file + "; the run ended before " + stage,
+                "scan run --resume goes on with it");
+}
+
 RunResult read_result(const std::filesystem::path& run) {
-  RunResult result{read_run_scans(run), read_run_poses(run), read_mesh(run / "surface.ply")};
+  check_stage_ran(run, "poses.tum", "align was done");
+  check_stage_ran(run, "surface.ply", "reconstruct was done");
+  RunResult result{.scans = read_run_scans(run),
+                   .world_from_scan = read_run_poses(run),
+                   .surface = read_supported_mesh(run / "surface.ply"),
+                   .stated_poses = read_run_stated_poses(run)};
   if (result.world_from_scan.size() != result.scans.size())
     throw Error(Trouble::input, (run / "poses.tum").string() + ": has " +
                                     std::to_string(result.world_from_scan.size()) + " poses for " +
@@ -72,24 +89,26 @@ void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Con
   const std::vector<Pose> poses = read_run_poses(run);
   const SurfaceResult result = make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
                                             recipe.reconstruct, console);
-  write_surface(run / "surface.ply", result);
+  write_supported_mesh(run / "surface.ply", supported(result));
   write_json(run / "reconstruction.json", surface_json(result));
 }
 
 Verdict verify_run(const std::filesystem::path& run, Console&) {
+  check_is_run(run);
+  check_stage_ran(run, "truth", "simulate was done");
   const Recipe recipe = read_recipe(recipe_path(run));
   const Truth truth = read_truth(truth_path(run));
-  const RunResult result = read_result(run);
+  RunResult result = read_result(run);
+  result.anchor = static_cast<std::size_t>(recipe.align.anchor);
   Verdict verdict = judge(measure_run(result, truth, recipe.verify), recipe.limits);
   write_json(run / "verdict.json", verdict_json(verdict));
   return verdict;
 }
 
 std::string report_run(const std::filesystem::path& run) {
+  check_is_run(run);
   Report report;
   report.recipe = json_if_there(recipe_path(run));
-  if (report.recipe.is_null())
-    throw Error(Trouble::input, run.string() + ": holds no recipe.json; is it a run folder?");
   report.title = report.recipe.value("name", run.filename().string());
   report.effects = json_if_there(run / "effects.json");
   report.alignment = json_if_there(run / "alignment.json");
@@ -121,6 +140,9 @@ void say_verdict(const ordered_json& verdict, const Console& console) {
       text += std::string("   ") + (m.at("pass").get<bool>() ? "pass" : "FAIL") + " (" +
               m.at("relation").get<std::string>() + " " + readable(m.at("limit"), unit) + ")";
     console.say(text);
+    console.say("      " + m.at("definition").get<std::string>() + " [" +
+                m.at("over").get<std::string>() +
+                "; n = " + std::to_string(m.at("count").get<std::size_t>()) + "]");
   }
   console.say(verdict.at("pass").get<bool>() ? "PASS" : "FAIL");
 }

@@ -33,8 +33,8 @@ Verdict verify_run(const std::filesystem::path& run, Console& console);
 // The report's page from what the folder holds.
 std::string report_run(const std::filesystem::path& run);
 
-// One line per measurement of a verdict.json, with its prediction where there is one, then PASS or
-// FAIL.
+// Each measurement of a verdict.json, with its prediction where there is one, and its definition in
+// the line below; then PASS or FAIL.
 void say_verdict(const nlohmann::ordered_json& verdict, const Console& console);
 
 }  // namespace scan

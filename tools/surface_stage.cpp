@@ -64,4 +64,8 @@ SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpo
   return result;
 }
 
+SupportedMesh supported(const SurfaceResult& result) {
+  return {result.surface, result.support_m, result.data_spacing_m, result.standard_error_m};
+}
+
 }  // namespace scan

@@ -3,6 +3,7 @@
 // Points to surface, as `scan reconstruct` and `scan run` do it.
 #pragma once
 
+#include "libscan/io/surface_file.h"
 #include "libscan/reconstruct/surface_result.h"
 #include "tools/console.h"
 #include "tools/recipe.h"
@@ -13,5 +14,8 @@ namespace scan {
 // world frame; `viewpoints` holds where the scanner of each point stood, or is empty.
 SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpoints,
                            const ReconstructSettings& settings, Console& console);
+
+// The surface with what its vertices know, as it is written.
+SupportedMesh supported(const SurfaceResult& result);
 
 }  // namespace scan

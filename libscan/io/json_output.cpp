@@ -8,6 +8,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/shape_json.h"
+#include "libscan/verify/definitions.h"
 
 namespace scan {
 namespace {
@@ -123,6 +124,7 @@ ordered_json measurement_json(const Measurement& m) {
   return {{"name", m.name},
           {"value", number(m.value)},
           {"unit", m.unit},
+          {"definition", definition(m.name)},
           {"over", m.over},
           {"count", m.count},
           {"limit", if_limited(number(m.limit.value_or(0)))},

@@ -153,18 +153,6 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
     refuse_ending(path, Trouble::output, ".ply .obj .stl .off");
 }
 
-void write_surface(const std::filesystem::path& path, const SurfaceResult& result) {
-  if (ending_of(path) != ".ply") return write_mesh(path, result.surface);
-  Ply ply = ply_from(result.surface);
-  const auto add = [&](const char* name, const std::vector<double>& values) {
-    if (!values.empty()) ply.elements.front().properties.push_back({name, values, {}, false});
-  };
-  add("support_m", result.support_m);
-  add("data_spacing_m", result.data_spacing_m);
-  add("standard_error_m", result.standard_error_m);
-  write_ply(path, ply);
-}
-
 bool holds_triangles(const std::filesystem::path& path) {
   const std::string ending = ending_of(path);
   if (ending == ".ply") {

@@ -7,7 +7,6 @@
 
 #include "libscan/core/mesh.h"
 #include "libscan/core/scan.h"
-#include "libscan/reconstruct/surface_result.h"
 
 namespace scan {
 
@@ -31,10 +30,6 @@ TexturedMesh read_textured_mesh(const std::filesystem::path& path);
 
 // .ply .obj .stl .off; written whole or not at all.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
-
-// The same; .ply also gets what is known of each vertex: support_m, data_spacing_m,
-// standard_error_m.
-void write_surface(const std::filesystem::path& path, const SurfaceResult& result);
 
 // True if the file holds triangles (a mesh), false if points only.
 bool holds_triangles(const std::filesystem::path& path);

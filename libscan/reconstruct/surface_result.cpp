@@ -19,12 +19,11 @@ std::string_view name_of(SolveStop stop) {
 }
 
 double unsupported_area_m2(const SurfaceResult& result) {
-  constexpr double most_spacings = 3;
   if (result.data_spacing_m.empty()) return 0;
   double twice = 0;
   for (const Triangle& t : result.surface.triangles)
     if (std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
-          return result.support_m[v] > most_spacings * result.data_spacing_m[v];
+          return result.support_m[v] > supported_within_spacings * result.data_spacing_m[v];
         }))
       twice += area_vector(result.surface, t).norm();
   return twice / 2;

@@ -57,9 +57,11 @@ struct SurfaceResult {
   Cost cost;
 };
 
-// Of the triangles that have a vertex farther than three spacings from all data: nearer than that
-// there is a sample of random ones with probability 1 - exp(-9 pi). The surface there is a guess
-// that goes on from around. 0 if the spacing of the data is not known.
+// Surface within so many spacings of the data is supported: of random samples one is as near with
+// probability 1 - exp(-9 pi). Farther off it is a guess that goes on from around.
+inline constexpr int supported_within_spacings = 3;
+
+// Of the triangles with a vertex that is not supported; 0 if the spacing of the data is not known.
 double unsupported_area_m2(const SurfaceResult& result);
 
 }  // namespace scan

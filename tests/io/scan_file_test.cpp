@@ -192,23 +192,6 @@ TEST(MeshFile, PlyObjAndOffBringBackDoublesToTheBit) {
   }
 }
 
-TEST(MeshFile, SurfacesKeepTheSupportOfTheirVertices) {
-  const TemporaryFolder folder;
-  SurfaceResult result;
-  result.surface = tetrahedron();
-  result.support_m = {1, 2, 3, 0.1};
-  result.data_spacing_m = {5, 6, 7, 8};
-  write_surface(folder / "t.ply", result);
-  EXPECT_EQ(read_mesh(folder / "t.ply").vertices, tetrahedron().vertices);
-  const Ply ply = read_ply(folder / "t.ply");
-  const PlyElement& vertex = *ply.find("vertex");
-  EXPECT_EQ(vertex.numbers("support_m"), result.support_m);
-  EXPECT_EQ(vertex.numbers("data_spacing_m"), result.data_spacing_m);
-  EXPECT_TRUE(vertex.numbers("standard_error_m").empty());
-  write_surface(folder / "t.obj", result);
-  EXPECT_EQ(read_mesh(folder / "t.obj").vertices, tetrahedron().vertices);
-}
-
 TEST(MeshFile, StlIsWeldedAndRoundsToFloat) {
   const TemporaryFolder folder;
   write_mesh(folder / "t.stl", tetrahedron());
