@@ -32,7 +32,7 @@ const std::vector<StageOf> study_stages = {
     {"simulate",
      {"seed", "scene", "scanner", "viewpoints", "effects", "acquire"},
      {"effects.json", "simulation.json", "timings.json", "scans", "truth"}},
-    {"align", {"align"}, {"alignment.json", "poses.tum"}},
+    {"align", {"align"}, {"alignment.json", "pose_trace.json", "poses.tum"}},
     {"reconstruct", {"reconstruct"}, {"surface.ply", "reconstruction.json"}}};
 
 // Files are never changed in place, so runs may share them.

@@ -10,8 +10,8 @@
 
 namespace scan {
 
-// Leaves out points with too large a sigma, thins, reconstructs, trims and decimates. The cloud is in the
-// world frame; `viewpoints` holds where the scanner of each point stood, or is empty.
+// Leaves out points with too large a sigma, thins, reconstructs, trims and decimates. The cloud is
+// in the world frame; `viewpoints` holds where the scanner of each point stood, or is empty.
 SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpoints,
                            const ReconstructSettings& settings, Console& console);
 

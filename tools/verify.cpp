@@ -89,7 +89,8 @@ std::vector<Measurement> measure_poses(const Arguments& arguments,
 
 void write_picture(const std::string& path, const Mesh& mesh, const TrueSurface& truth) {
   const auto deviations = deviations_m(mesh.vertices, truth);
-  write_png(path, contact_sheet(six_views(mesh, deviations, deviation_limit_m(deviations), 400)));
+  write_png(path, contact_sheet(
+                      Portrait(mesh, deviations, deviation_limit_m(deviations)).six_views(400)));
 }
 
 std::vector<Measurement> measure_disparity(const Arguments& arguments) {

@@ -118,9 +118,12 @@ std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueS
   return figures;
 }
 
+Pose true_world_from_world(const RunResult& result, const Truth& truth) {
+  return gauge(result.world_from_scan, true_poses(truth), picked_points(result.scans));
+}
+
 Mesh in_true_world(const RunResult& result, const Truth& truth) {
-  return transformed(gauge(result.world_from_scan, true_poses(truth), picked_points(result.scans)),
-                     result.surface.mesh);
+  return transformed(true_world_from_world(result, truth), result.surface.mesh);
 }
 
 std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth,

@@ -39,7 +39,10 @@ std::vector<Eigen::Vector3d> corners_of(const Bounds& box);
 std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth,
                                      const VerifySettings& settings);
 
-// The measured surface moved into the truth's world frame by that motion.
+// That motion.
+Pose true_world_from_world(const RunResult& result, const Truth& truth);
+
+// The measured surface moved by it into the truth's world frame.
 Mesh in_true_world(const RunResult& result, const Truth& truth);
 
 }  // namespace scan

@@ -8,6 +8,7 @@
 #include "tools/console.h"
 #include "tools/report/html.h"
 #include "tools/report/tradeoff_plot.h"
+#include "tools/version.h"
 
 namespace scan {
 namespace {
@@ -74,7 +75,7 @@ std::set<std::string> stages_of(const ordered_json& runs) {
 }
 
 std::string heads(const ordered_json& runs, bool has_cases) {
-  std::string html = "<h2>Settings</h2><table><tr>";
+  std::string html = "<h3>Settings</h3><div class=\"wide\"><table><tr>";
   if (has_cases) html += "<th>case</th>";
   for (const auto& [key, value] : runs.at(0).at("settings").items())
     html += "<th>" + escaped(key) + "</th>";
@@ -118,7 +119,7 @@ std::string run_table(const ordered_json& tradeoff, const std::string& unit) {
                                                   : "") +
             "</tr>";
   }
-  return html + "</table>";
+  return html + "</table></div>";
 }
 
 std::string source_rows(const ordered_json& in, const std::string& unit, bool has_cases) {
@@ -137,7 +138,7 @@ std::string source_table(const ordered_json& cases, const std::string& unit) {
   std::string rows;
   for (const auto& in : cases) rows += source_rows(in, unit, cases.size() > 1);
   if (rows.empty()) return "";
-  return "<h2>Where the error comes from</h2><p>Runs of the advised settings with the same random "
+  return "<h3>Where the error comes from</h3><p>Runs of the advised settings with the same random "
          "streams, spared one source after another.</p><table><tr>" +
          std::string(cases.size() > 1 ? "<th>case</th>" : "") +
          "<th>source</th><th class=\"number\">share of the mean square</th>"
@@ -156,18 +157,25 @@ std::string plot_of(const ordered_json& tradeoff) {
 
 }  // namespace
 
-std::string tradeoff_page(const std::string& title, const ordered_json& tradeoff) {
+std::string tradeoff_parts(const ordered_json& tradeoff) {
   const std::string unit = tradeoff.at("unit").get<std::string>();
-  std::string html = page_head(title + ": what accuracy costs");
+  std::string html;
   for (const auto& in : tradeoff.at("cases"))
-    html += "<p><b>" + escaped(in.at("advice").at("text").get<std::string>()) + "</b></p>";
+    html +=
+        "<p><strong>" + escaped(in.at("advice").at("text").get<std::string>()) + "</strong></p>";
   html +=
       "<p>Filled marks are the front: nothing tried is both better and faster. A ring is the "
       "advice. Bars reach from the least to the most of the seeds. " +
       std::to_string(tradeoff.at("threads").get<int>()) + " threads, " +
       escaped(tradeoff.at("machine").get<std::string>()) + ".</p>";
-  html += plot_of(tradeoff) + source_table(tradeoff.at("cases"), unit) + run_table(tradeoff, unit);
-  return html + "</body></html>\n";
+  return html + plot_of(tradeoff) + source_table(tradeoff.at("cases"), unit) +
+         run_table(tradeoff, unit);
+}
+
+std::string tradeoff_page(const std::string& title, const ordered_json& tradeoff) {
+  const std::string whole = title + ": what accuracy costs";
+  return page_head(whole) + "<h1>" + escaped(whole) + "</h1><p class=\"quiet\">libscan " +
+         version_text() + "</p><main>" + tradeoff_parts(tradeoff) + "</main></body></html>\n";
 }
 
 std::string tradeoff_picture(const ordered_json& tradeoff) {

@@ -14,4 +14,7 @@ std::string tradeoff_page(const std::string& title, const nlohmann::ordered_json
 // The page's curve as an SVG file.
 std::string tradeoff_picture(const nlohmann::ordered_json& tradeoff);
 
+// The same without head and end, for pages that show more.
+std::string tradeoff_parts(const nlohmann::ordered_json& tradeoff);
+
 }  // namespace scan

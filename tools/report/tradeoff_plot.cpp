@@ -65,13 +65,13 @@ std::string frame(const Axis& x, const Axis& y, const TradeoffLabels& labels,
                   const std::string& title) {
   std::string svg;
   for (const double tick : ticks(x)) {
-    svg += print("<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' stroke='#ddd'/>", x.at(tick), y.to,
-                 x.at(tick), y.from);
+    svg += print("<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' class='grid' stroke='#ddd'/>",
+                 x.at(tick), y.to, x.at(tick), y.from);
     svg += centred(x.at(tick), y.from + 18, print("%g", tick));
   }
   for (const double tick : ticks(y)) {
-    svg += print("<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' stroke='#ddd'/>", x.from,
-                 y.at(tick), x.to, y.at(tick));
+    svg += print("<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' class='grid' stroke='#ddd'/>",
+                 x.from, y.at(tick), x.to, y.at(tick));
     svg += print("<text x='%.1f' y='%.1f' text-anchor='end'>%s</text>", x.from - 6, y.at(tick) + 4,
                  readable_value(tick, labels.unit).c_str());
   }
@@ -192,7 +192,8 @@ std::string tradeoff_plot(const std::vector<TradeoffMark>& all, const TradeoffLa
       height * static_cast<double>((panels.size() + (is_single ? 0 : 1)) / (is_single ? 1 : 2));
   svg += legend(curves, below, bottom);
   return print(
-             "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %g %.0f' role='img' "
+             "<svg class='plot' xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %g %.0f' "
+             "role='img' "
              "aria-label='Error against seconds' font-size='12' font-family='sans-serif'>",
              page_width, bottom) +
          (marks.empty() ? centred(page_width / 2, 40, "No run gave an error to show.") : svg) +
