@@ -140,52 +140,61 @@ class Decimator {
     queue_.push({sum.at(best), a, b, versions_[a] + versions_[b], best + origin_});
   }
 
-  // Old places go to the nearest of the triangles that come; undone if one is too far from all.
+  using Corners = std::array<Eigen::Vector3d, 3>;
+
+  // Undone if an old place is too far from all triangles that come, or one of these from the old
+  // surface.
   bool collapse_within_tolerance(const Candidate& c) {
-    const double inner = inner_share * tolerance_m_;
-    if (search_.closest(c.place).distance_m > inner) return false;
+    const double inner_m = inner_share * tolerance_m_;
+    if (search_.closest(c.place).distance_m > inner_m) return false;
     std::vector<std::uint32_t> star(mesh_.around(c.kept).begin(), mesh_.around(c.kept).end());
     star.insert(star.end(), mesh_.around(c.gone).begin(), mesh_.around(c.gone).end());
     std::sort(star.begin(), star.end());
     star.erase(std::unique(star.begin(), star.end()), star.end());
     std::vector<std::uint32_t> left;
-    std::vector<std::array<Eigen::Vector3d, 3>> corners;
+    std::vector<Corners> corners;
     for (const std::uint32_t t : star) {
       const Triangle& old = mesh_.triangle(t);
       const auto has = [&](std::uint32_t v) { return std::count(old.begin(), old.end(), v) > 0; };
       if (has(c.kept) && has(c.gone)) continue;
       left.push_back(t);
-      auto& places = corners.emplace_back();
+      Corners& places = corners.emplace_back();
       for (int k = 0; k < 3; ++k)
         places[k] = old[k] == c.kept || old[k] == c.gone ? c.place : mesh_.at(old[k]);
-      if (!is_near(places, inner)) return false;
+      if (!is_near(places, inner_m)) return false;
     }
     std::vector<std::vector<std::uint32_t>> lists(left.size());
-    for (const std::uint32_t t : star)
-      for (const std::uint32_t v : stands_for_[t]) {
-        double least2 = inner * inner;
-        std::size_t nearest = left.size();
-        for (std::size_t i = 0; i < left.size(); ++i) {
-          const Eigen::Vector3d& x = places_[v];
-          const double d2 =
-              (x - closest_point_on_triangle(x, corners[i][0], corners[i][1], corners[i][2]))
-                  .squaredNorm();
-          if (d2 <= least2) {
-            least2 = d2;
-            nearest = i;
-          }
-        }
-        if (nearest == left.size()) return false;
-        lists[nearest].push_back(v);
-      }
+    if (!share_out(star, corners, inner_m, lists)) return false;
     for (const std::uint32_t t : star) stands_for_[t] = {};
     for (std::size_t i = 0; i < left.size(); ++i) stands_for_[left[i]] = std::move(lists[i]);
     mesh_.collapse(c.kept, c.gone, c.place);
     return true;
   }
 
+  // The places that the star stands for go to the nearest of the triangles that come; false if one
+  // is too far from all.
+  bool share_out(const std::vector<std::uint32_t>& star, const std::vector<Corners>& corners,
+                 double inner_m, std::vector<std::vector<std::uint32_t>>& lists) const {
+    for (const std::uint32_t t : star)
+      for (const std::uint32_t place : stands_for_[t]) {
+        const Eigen::Vector3d& x = places_[place];
+        double least2 = inner_m * inner_m;
+        std::size_t nearest = corners.size();
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+          const auto& [p, q, r] = corners[i];
+          const double d2 = (x - closest_point_on_triangle(x, p, q, r)).squaredNorm();
+          if (d2 > least2) continue;
+          least2 = d2;
+          nearest = i;
+        }
+        if (nearest == corners.size()) return false;
+        lists[nearest].push_back(place);
+      }
+    return true;
+  }
+
   // Whether a new triangle's middle and those of its sides are near the old surface.
-  bool is_near(const std::array<Eigen::Vector3d, 3>& c, double inner_m) const {
+  bool is_near(const Corners& c, double inner_m) const {
     const auto near = [&](const Eigen::Vector3d& x) {
       return search_.closest(x).distance_m <= inner_m;
     };

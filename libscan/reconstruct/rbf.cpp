@@ -23,6 +23,7 @@ constexpr double spacings_in_radius = 3;    // some 28 nodes of a surface within
 constexpr double finest = 0.7;              // node spacing over the samples': all of them count
 constexpr double relative_residual = 1e-3;  // what is left, the next level takes up
 constexpr double least_share = 0.02;        // of the samples, for a further level
+constexpr double cell_sigmas = 1.5;         // smaller facets would show the noise alone
 constexpr double most_sigmas = 3;           // that scatter moves a sample
 constexpr int max_iterations = 100;         // of a level
 
@@ -167,14 +168,13 @@ SurfaceResult rbf(const PointCloud& cloud, const RbfOptions& options, const Prog
   const double spacing = fine_spacing(samples);
   const double last_radius = spacings_in_radius * finest * spacing;
   RbfField field(samples);
-  double cell = 0;
   for (double radius = first_radius;; radius /= 2) {
     if (progress)
       progress("solve", std::log2(first_radius / radius) / std::log2(first_radius / last_radius));
-    cell = std::max(spacing, radius / spacings_in_radius);
     if (field.add_level(radius) < least_share || radius <= last_radius) break;
   }
   if (progress) progress("surface", 0);
+  const double cell = std::max(spacing, cell_sigmas * median(samples.sigma));
   const int depth = static_cast<int>(
       std::clamp(std::ceil(-std::log2(cell)), 3.0, static_cast<double>(options.max_depth)));
   SurfaceResult result =

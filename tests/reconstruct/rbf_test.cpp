@@ -70,6 +70,16 @@ TEST(Rbf, ClosesAHoleAndMarksIt) {
   EXPECT_NEAR(farthest, 0.4, 0.05);
 }
 
+// The sphere that all begins with is the surface: its facets are no larger for that. A facet of a
+// spacing of 0.046 m sags by at most 0.046^2 / 8 = 2.6e-4 along its side, twice that along the
+// diagonal of a cell.
+TEST(Rbf, HasSmallFacetsWhereNoLevelHasAnythingToAdd) {
+  const SurfaceResult result = rbf(sphere_cloud(6000));
+  const double worst = mean_distance(
+      result.surface, [](const Eigen::Vector3d& x) { return std::abs(x.norm() - 1); });
+  EXPECT_LT(worst, 5.2e-4);
+}
+
 TEST(Rbf, RefusesADepthOutsideItsLimits) {
   EXPECT_THROW(rbf(sphere_cloud(100), {.max_depth = 2}), Error);
   EXPECT_THROW(rbf(sphere_cloud(100), {.max_depth = 21}), Error);
