@@ -68,10 +68,10 @@ TEST(SsdAccuracy, FollowsExactPointsOfARoughSurface) {
   EXPECT_LT(mean_distance(result, distance), 0.1 * bumps);
 }
 
-// Every hundredth point of a scanner lies two to four spacings off the surface, too near for a search
-// for lonely points. Trusted like the others, each lifts the surface to itself: the mean distance
-// triples and more. A sigma that speaks against them leaves the surface as it is without them, but
-// for what their weight of a few per cent, and the points that are missing, do.
+// Every hundredth point of a scanner lies two to four spacings off the surface, too near for a
+// search for lonely points. Trusted like the others, each lifts the surface to itself: the mean
+// distance triples and more. A sigma that speaks against them leaves the surface as it is without
+// them, but for what their weight of a few per cent, and the points that are missing, do.
 TEST(SsdAccuracy, DoesNotFollowStrayPointsOfAScanner) {
   const double sigma = 1e-3, spacing = 0.0186;  // 40,000 points on 13.8
   PointCloud cloud = scattered(torus_cloud(40000), sigma);
