@@ -82,6 +82,19 @@ std::vector<double> LocalSmoothing::around(const std::vector<double>& sums) cons
   return result;
 }
 
+std::vector<double> LocalSmoothing::mean_around(const std::vector<double>& values) const {
+  std::vector<double> sums(length_.size(), 0.0), counts = sums, result(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sums[region_of_[i]] += std::abs(values[i]);
+    counts[region_of_[i]] += 1;
+  }
+  sums = around(sums);
+  counts = around(counts);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = sums[region_of_[i]] / counts[region_of_[i]];
+  return result;
+}
+
 std::vector<double> LocalSmoothing::lengths() const {
   const std::size_t regions = length_.size();
   std::vector<double> logs(regions), counts(regions, 0.0);
@@ -95,12 +108,13 @@ std::vector<double> LocalSmoothing::lengths() const {
   return result;
 }
 
-double LocalSmoothing::judge(double trial, const std::vector<double>& residuals) {
+double LocalSmoothing::judge(double trial, const std::vector<double>& residuals,
+                             const std::vector<double>& trust) {
   std::vector<double> risk(length_.size(), 0.0), counts = risk, gain = risk;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const double sigma2 = samples_.sigma[i] * samples_.sigma[i];
     risk[region_of_[i]] +=
-        residuals[i] * residuals[i] + 2 * sigma2 * leverage(samples_.area[i], trial);
+        trust[i] * (residuals[i] * residuals[i] + 2 * sigma2 * leverage(samples_.area[i], trial));
     counts[region_of_[i]] += 1;
   }
   for (std::size_t r = 0; r < risk.size(); ++r) gain[r] = risk_[r] - risk[r];

@@ -32,9 +32,12 @@ class LocalSmoothing {
  public:
   explicit LocalSmoothing(const Samples& samples);
 
-  // Takes the residuals of a fit with the length `trial` and keeps it where it lowered the risk.
-  // Returns the share of samples where it did.
-  double judge(double trial, const std::vector<double>& residuals);
+  // Takes the residuals of a fit with the length `trial`, each counted by its trust, and keeps it
+  // where it lowered the risk. Returns the share of samples where it did.
+  double judge(double trial, const std::vector<double>& residuals,
+               const std::vector<double>& trust);
+  // Per sample, the mean of such values' sizes around it.
+  std::vector<double> mean_around(const std::vector<double>& values) const;
   // What was kept, per sample; the logarithm goes smoothly from region to region.
   std::vector<double> lengths() const;
 

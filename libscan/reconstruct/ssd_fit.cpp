@@ -22,6 +22,11 @@ constexpr double least_spacings = 0.4, least_spacings_exact = 0.2;
 constexpr double least_sigmas = 1;
 // So much of the solution's energy norm moves the surface by less than scatter, or cells, do.
 constexpr double residual_of_scattered = 5e-3, residual_of_exact = 1e-3;
+// Residuals within one of these are nothing strange: scatter; what is lost between samples; what a
+// fit of that length rounds off an edge; what the samples around leave on average.
+constexpr double tolerated_sigmas = 4, tolerated_spacings = 0.5, tolerated_lengths = 0.5;
+constexpr double tolerated_means = 2;
+constexpr double judged_spacings = 10;
 // A trial has only to tell which of two lengths is better.
 constexpr double trial_residual = 0.03;
 constexpr double least_share_lowered = 0.02;
@@ -43,7 +48,9 @@ class Fit {
       : samples_(samples),
         options_(options),
         levels_(grid.levels.size()),
-        system_(grid, samples, weights(lengths_per_cell / grid.levels.front().cells())),
+        trust_(samples.points.size(), 1.0),
+        smoothing_(samples),
+        system_(grid, samples, smoothing_weights(samples, even(length_at(0)), trust_)),
         solver_(system_, grid) {
     result_.solution.coefficients = active_arrays(grid);
   }
@@ -54,28 +61,31 @@ class Fit {
     for (std::size_t l = 0; l + 1 < levels_; ++l) {
       report(progress, l);
       system_.use_levels(l);
-      solve(weights(std::max(length_at(l), options_.length)), trial_residual);
+      const double trial = std::max(length_at(l), options_.length);
+      solve(even(trial), trial_residual);
+      distrust(system_.residuals(coefficients()), trial);
     }
   }
 
   // Down to the least length, as long as shorter ones are better somewhere.
   void search(const Progress& progress) {
-    LocalSmoothing smoothing(samples_);
     for (std::size_t l = 0; l < levels_ || length_at(l - 1) > 1.2 * options_.length; ++l) {
       report(progress, l);
       const double trial = std::max(length_at(l), options_.length);
       if (l < levels_) system_.use_levels(l);
-      solve(weights(trial), trial_residual);
-      const double lowered = smoothing.judge(trial, system_.residuals(coefficients()));
+      solve(even(trial), trial_residual);
+      const std::vector<double> residuals = system_.residuals(coefficients());
+      distrust(residuals, trial);
+      const double lowered = smoothing_.judge(trial, residuals, trust_);
       if (l + 1 >= levels_ && lowered < least_share_lowered) break;
     }
-    result_.length = smoothing.lengths();
+    result_.length = smoothing_.lengths();
   }
 
   // On all levels with the lengths found.
   void finish() {
     system_.use_levels(levels_ - 1);
-    solve(smoothing_weights(samples_, result_.length), options_.relative_residual);
+    solve(result_.length, options_.relative_residual);
     if (samples_.scattered_all_around) {
       system_.aim_at_scattered_mean(coefficients());
       improve(options_.relative_residual);
@@ -102,12 +112,21 @@ class Fit {
 
   LevelArrays& coefficients() { return result_.solution.coefficients; }
 
-  SampleWeights weights(double length) const {
-    return smoothing_weights(samples_, std::vector<double>(samples_.points.size(), length));
+  std::vector<double> even(double length) const {
+    return std::vector<double>(samples_.points.size(), length);
   }
 
-  void solve(SampleWeights weights, double relative_residual) {
-    system_.set_weights(std::move(weights));
+  // Of points that do not carry their own scatter, detail between samples looks like strays; and
+  // longer fits round off whole features.
+  void distrust(const std::vector<double>& residuals, double length) {
+    if (samples_.scattered_all_around ||
+        length > judged_spacings * std::sqrt(median(samples_.area)))
+      return;
+    trust_ = trust(samples_, residuals, smoothing_.mean_around(residuals), length);
+  }
+
+  void solve(const std::vector<double>& length, double relative_residual) {
+    system_.set_weights(smoothing_weights(samples_, length, trust_));
     solver_.refresh();
     improve(relative_residual);
   }
@@ -120,6 +139,8 @@ class Fit {
   const Samples& samples_;
   SsdFitOptions options_;
   std::size_t levels_;
+  std::vector<double> trust_;
+  LocalSmoothing smoothing_;
   SsdSystem system_;
   SsdSolver solver_;
   SsdFit result_;
@@ -127,16 +148,30 @@ class Fit {
 
 }  // namespace
 
-SampleWeights smoothing_weights(const Samples& samples, const std::vector<double>& length) {
+SampleWeights smoothing_weights(const Samples& samples, const std::vector<double>& length,
+                                const std::vector<double>& trust) {
   SampleWeights weights;
   for (std::size_t i = 0; i < length.size(); ++i) {
     const double area = samples.area[i], sigma = samples.sigma[i];
     const double l = std::max(length[i], least_length(area, sigma));
-    weights.value.push_back(4 * area / (l * l * l));
+    weights.value.push_back(trust[i] * 4 * area / (l * l * l));
     weights.gradient.push_back((slope_share * l * l + patch_share * exactness(area, sigma) * area) *
                                weights.value.back());
   }
   return weights;
+}
+
+std::vector<double> trust(const Samples& samples, const std::vector<double>& residuals,
+                          const std::vector<double>& mean_around, double length) {
+  std::vector<double> trust(residuals.size());
+  for (std::size_t i = 0; i < trust.size(); ++i) {
+    const double tolerance = std::max(
+        {tolerated_sigmas * samples.sigma[i], tolerated_spacings * std::sqrt(samples.area[i]),
+         tolerated_lengths * length, tolerated_means * mean_around[i]});
+    const double share = tolerance / std::max(tolerance, std::abs(residuals[i]));
+    trust[i] = share * share * share * share;
+  }
+  return trust;
 }
 
 SsdFit fit_surface(const OctreeGrid& grid, const Samples& samples, const SsdFitOptions& options,

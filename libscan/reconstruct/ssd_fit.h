@@ -23,7 +23,16 @@ struct SsdFitOptions {
 // gradient that times 0.03 length^2, and area / 12 more where samples are exact, for there a normal
 // speaks for the patch of its sample. With these the weight of the smoothness is one, at any scale
 // and density.
-SampleWeights smoothing_weights(const Samples& samples, const std::vector<double>& length);
+// Both times `trust`, see below.
+SampleWeights smoothing_weights(const Samples& samples, const std::vector<double>& length,
+                                const std::vector<double>& trust);
+
+// One for samples that a fit of this smoothing length leaves no farther off than is usual: within 4
+// sigma, half a spacing, half the length or twice the mean size of the residuals around;
+// (tolerance / residual)^4 for those farther off. With lengths that fall from fit to fit a stray
+// sample does not gain the weight to pull the surface to itself.
+std::vector<double> trust(const Samples& samples, const std::vector<double>& residuals,
+                          const std::vector<double>& mean_around, double length);
 
 // From the coarsest level to the finest: each is solved with a smoothing length in step with its
 // cells, and keeps it in the regions where that lowers the risk; past the finest level the length

@@ -47,6 +47,10 @@ Samples unit_square(std::size_t side, double sigma) {
   return samples;
 }
 
+std::vector<double> all_trusted(const Samples& samples) {
+  return std::vector<double>(samples.points.size(), 1.0);
+}
+
 // Residuals that no length lowers ask for the longest one, those that fall by more than the noise a
 // fit takes up for the shortest; each side of the square gets its own.
 TEST(LocalSmoothing, ChoosesByRegion) {
@@ -55,7 +59,7 @@ TEST(LocalSmoothing, ChoosesByRegion) {
   for (const double trial : {0.08, 0.04, 0.02}) {
     std::vector<double> residuals;
     for (const auto& u : samples.points) residuals.push_back(u[0] < 0.5 ? 1e-3 : trial);
-    smoothing.judge(trial, residuals);
+    smoothing.judge(trial, residuals, all_trusted(samples));
   }
   const std::vector<double> length = smoothing.lengths();
   for (std::size_t i = 0; i < length.size(); ++i) {
@@ -79,11 +83,11 @@ TEST(LocalSmoothing, WeighsALongTrialOverItsReach) {
   const Samples samples = unit_square(100, 1e-3);
   const auto length_in_stripe = [&](double first, double second) {
     LocalSmoothing smoothing(samples);
-    smoothing.judge(first, std::vector<double>(samples.points.size(), 1.0));
+    smoothing.judge(first, std::vector<double>(samples.points.size(), 1.0), all_trusted(samples));
     std::vector<double> residuals;
     for (const auto& u : samples.points)
       residuals.push_back(u[0] > 0.4949 && u[0] < 0.5656 ? 1.6 : 0.5);
-    smoothing.judge(second, residuals);
+    smoothing.judge(second, residuals, all_trusted(samples));
     double sum = 0, count = 0;
     const std::vector<double> lengths = smoothing.lengths();
     for (std::size_t i = 0; i < lengths.size(); ++i)
@@ -97,12 +101,30 @@ TEST(LocalSmoothing, WeighsALongTrialOverItsReach) {
   EXPECT_NEAR(length_in_stripe(0.4, 0.2), 0.2, 1e-9);
 }
 
+// Samples that are not trusted do not ask for a length that follows them.
+TEST(LocalSmoothing, DoesNotFollowUntrustedSamples) {
+  const Samples samples = unit_square(50, 1e-3);
+  std::vector<double> off(2500, 1e-3), on(2500, 1e-3), trust(2500, 1.0);
+  for (std::size_t i = 0; i < 2500; i += 10) off[i] = 1, trust[i] = 1e-12;
+  LocalSmoothing smoothing(samples);
+  smoothing.judge(0.1, off, trust);
+  EXPECT_EQ(smoothing.judge(0.05, on, trust), 0);
+}
+
+TEST(LocalSmoothing, AveragesSizesAround) {
+  const Samples samples = unit_square(50, 1e-3);
+  const LocalSmoothing smoothing(samples);
+  std::vector<double> values(2500);
+  for (std::size_t i = 0; i < 2500; ++i) values[i] = i % 2 == 0 ? 3 : -3;
+  for (const double mean : smoothing.mean_around(values)) EXPECT_NEAR(mean, 3, 1e-12);
+}
+
 TEST(LocalSmoothing, TellsHowManySamplesFaredBetter) {
   const Samples samples = unit_square(50, 1e-3);
   LocalSmoothing smoothing(samples);
-  EXPECT_EQ(smoothing.judge(0.1, std::vector<double>(2500, 1e-3)), 1);
-  EXPECT_EQ(smoothing.judge(0.05, std::vector<double>(2500, 1e-3)), 0);
-  EXPECT_EQ(smoothing.judge(0.02, std::vector<double>(2500, 1e-6)), 1);
+  EXPECT_EQ(smoothing.judge(0.1, std::vector<double>(2500, 1e-3), all_trusted(samples)), 1);
+  EXPECT_EQ(smoothing.judge(0.05, std::vector<double>(2500, 1e-3), all_trusted(samples)), 0);
+  EXPECT_EQ(smoothing.judge(0.02, std::vector<double>(2500, 1e-6), all_trusted(samples)), 1);
 }
 
 }  // namespace

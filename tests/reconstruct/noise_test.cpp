@@ -32,9 +32,8 @@ TEST(Noise, IsNoneForExactPoints) {
   EXPECT_LT(estimate_sigma(sphere_cloud(20000).points), 1e-6);
 }
 
-// Bumps as wide as four spacings of the points, which no quadric over 24 points follows: it leaves
-// about their root mean square, height / sqrt(8). Of pairs, whose differences vanish with their
-// distance, little may be left.
+// Bumps of eight spacings a wave, which a quadric over 24 points follows in part only: it leaves
+// 0.13 of their height. Of pairs, whose differences vanish with their distance, less may be left.
 TEST(Noise, IsNotTheRoughnessOfTheSurface) {
   const double spacing = std::sqrt(4 * std::numbers::pi / 20000), height = 0.01;
   const PointCloud rough = bumpy_cloud(20000, height, std::numbers::pi / (4 * spacing));
