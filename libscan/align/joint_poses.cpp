@@ -173,6 +173,7 @@ void Refinement::settle(int most_rounds, const Progress& progress) {
     const bool still = move(damped(std::move(twists)));
     done = still && settled && way.whole;
     ++out_.rounds;
+    if (options_.on_round) options_.on_round(out_.world_from_local);
     if (progress) progress("refine", double(out_.rounds) / options_.max_rounds);
   }
 }

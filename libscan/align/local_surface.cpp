@@ -9,7 +9,7 @@
 #include "libscan/align/symmetric_matrix.h"
 #include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
-#include "libscan/search/batch.h"
+#include "libscan/search/patches.h"
 
 namespace scan {
 namespace {
@@ -89,22 +89,26 @@ bool is_worth_widening(const LocalFit& fit) {
   return fit.shape == LocalShape::line || fit.shape == LocalShape::unknown;
 }
 
-// The nearest `count` places: of points that coincide, which follow one another but for others just
-// as far, one.
+// Of the points found that coincide, which follow one another but for others just as far, leaves
+// one.
+void merge_coincident(std::span<const Eigen::Vector3d> points, std::vector<Neighbour>& found) {
+  for (std::size_t a = 0; a + 1 < found.size(); ++a)
+    for (std::size_t b = a + 1; b < found.size() && found[b].distance2_m2 == found[a].distance2_m2;)
+      if (points[found[b].index] == points[found[a].index])
+        found.erase(found.begin() + static_cast<std::ptrdiff_t>(b));
+      else
+        ++b;
+}
+
+// The nearest `count` places to point i, of which `found` holds the nearest points.
 template <class S>
-void nearest_places(std::span<const Eigen::Vector3d> points, std::size_t i, const S& search,
-                    std::size_t count, std::vector<Neighbour>& found) {
-  for (std::size_t k = count;; k *= 4) {
-    search.k_nearest(points[i], k, found);
+void complete_places(std::span<const Eigen::Vector3d> points, std::size_t i, const S& search,
+                     std::size_t count, std::vector<Neighbour>& found) {
+  for (std::size_t k = found.size();; k *= 4) {
     const bool all = found.size() == points.size();
-    for (std::size_t a = 0; a + 1 < found.size(); ++a)
-      for (std::size_t b = a + 1;
-           b < found.size() && found[b].distance2_m2 == found[a].distance2_m2;)
-        if (points[found[b].index] == points[found[a].index])
-          found.erase(found.begin() + static_cast<std::ptrdiff_t>(b));
-        else
-          ++b;
+    merge_coincident(points, found);
     if (all || found.size() >= count) break;
+    search.k_nearest(points[i], 4 * k, found);
   }
   if (found.size() > count) found.resize(count);
 }
@@ -113,18 +117,16 @@ template <class S>
 std::vector<LocalFit> fits_by(std::span<const Eigen::Vector3d> points, const S& search,
                               std::size_t neighbours) {
   std::vector<LocalFit> fits(points.size());
-  parallel_chunks(points.size(), queries_per_task, [&](std::size_t begin, std::size_t end) {
-    std::vector<Neighbour> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      nearest_places(points, i, search, neighbours, found);
-      fits[i] = fit_to(found, points);
-      for (std::size_t more = 4;
-           more <= widest && found.size() >= neighbours && is_worth_widening(fits[i]); more *= 4) {
-        nearest_places(points, i, search, more * neighbours, found);
-        const LocalFit wider = fit_to(found, points);
-        if (wider.shape == LocalShape::surface || fits[i].shape == LocalShape::unknown)
-          fits[i] = wider;
-      }
+  k_nearest_of_own(search, points, neighbours, [&](std::uint32_t i, std::vector<Neighbour>& found) {
+    complete_places(points, i, search, neighbours, found);
+    fits[i] = fit_to(found, points);
+    for (std::size_t more = 4;
+         more <= widest && found.size() >= neighbours && is_worth_widening(fits[i]); more *= 4) {
+      search.k_nearest(points[i], more * neighbours, found);
+      complete_places(points, i, search, more * neighbours, found);
+      const LocalFit wider = fit_to(found, points);
+      if (wider.shape == LocalShape::surface || fits[i].shape == LocalShape::unknown)
+        fits[i] = wider;
     }
   });
   return fits;

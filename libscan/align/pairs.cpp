@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
@@ -30,6 +31,51 @@ double noise_across_m(const PreparedCloud& cloud) {
   return median(std::move(sigmas_m));
 }
 
+// Finds the nearest points of a target to queries that follow one another closely.
+template <class S>
+class NearestFinder {
+ public:
+  NearestFinder(const S& search, const PreparedCloud& target) : search_(search), target_(target) {}
+
+  // Brings the match's target up to date with the point's place. Returns its distance, metres.
+  double find(const Eigen::Vector3d& moved, Match& match) {
+    const std::uint32_t guess = match.target != no_point ? match.target : last_;
+    const double gone_m = (moved - match.searched_at.cast<double>()).norm();
+    if (match.target != no_point) {
+      const double distance_m = (moved - target_.points[match.target]).norm();
+      // Kept as float, the place is off by some 2^-24 of its coordinates.
+      const double off_m = 0x1p-22 * moved.norm() + 1e-37;
+      if ((distance_m + gone_m) * (1 + 1e-12) + off_m < match.others_m) return distance_m;
+    }
+    if (match.target == no_point || gone_m < target_.spacing_m) {
+      search_.k_nearest(moved, 2, found_, guess);
+    } else {
+      found_.clear();
+      if (const auto nearest = search_.nearest(moved, unlimited_m, guess))
+        found_.push_back(*nearest);
+    }
+    if (found_.empty()) {
+      match.target = no_point;
+      return unlimited_m;
+    }
+    match.target = last_ = found_[0].index;
+    match.searched_at = moved.cast<float>();
+    match.others_m = found_.size() > 1 ? as_bound(std::sqrt(found_[1].distance2_m2)) : 0;
+    return std::sqrt(found_[0].distance2_m2);
+  }
+
+ private:
+  static float as_bound(double distance_m) {
+    constexpr double largest = std::numeric_limits<float>::max();
+    return static_cast<float>(std::min((1 - 0x1p-23) * distance_m, largest));
+  }
+
+  const S& search_;
+  const PreparedCloud& target_;
+  std::vector<Neighbour> found_;
+  std::uint32_t last_ = no_point;
+};
+
 }  // namespace
 
 PairFinder::PairFinder(const PreparedCloud& source, const PreparedCloud& target,
@@ -51,10 +97,12 @@ void PairFinder::find(const Pose& pose, std::span<const std::uint32_t> sample,
   const bool signs = source_.oriented && target_.oriented;
   const bool planes =
       options_.method == IcpMethod::point_to_plane || options_.method == IcpMethod::symmetric;
+  const double reach_share =
+      options_.method == IcpMethod::point_to_point ? 1 : plane_share_of_reach;
   const auto passes = [&](std::uint32_t i, std::uint32_t j, const Eigen::Vector3d& apart) {
     const Eigen::Vector3d& there = target_.normals[j];
     if (there.isZero(0)) return !planes;
-    const double across_m = apart.dot(there), reach_m = target_.fits[j].reach_m;
+    const double across_m = apart.dot(there), reach_m = reach_share * target_.fits[j].reach_m;
     if (apart.squaredNorm() - across_m * across_m > reach_m * reach_m) return false;
     const Eigen::Vector3d& here = source_.normals[i];
     if (here.isZero(0)) return true;
@@ -62,19 +110,19 @@ void PairFinder::find(const Pose& pose, std::span<const std::uint32_t> sample,
     return (signs ? cosine : std::abs(cosine)) >= least_cosine;
   };
   const auto find_all = [&](const auto& search) {
-    parallel_for(
-        sample.size(),
-        [&](std::size_t k) {
-          const std::uint32_t i = sample[k];
-          const Eigen::Vector3d moved = pose * source_.points[i];
-          const auto found = search.nearest(moved, most_m, matches[k].target);
-          matches[k] = {};
-          if (!found) return;
-          matches[k].target = found->index;
-          if (passes(i, found->index, moved - target_.points[found->index]))
-            matches[k].residual_m = residual_m(pose, {i, found->index});
-        },
-        chunk);
+    parallel_chunks(sample.size(), chunk, [&](std::size_t begin, std::size_t end) {
+      NearestFinder finder(search, target_);
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::uint32_t i = sample[k];
+        Match& match = matches[k];
+        const Eigen::Vector3d moved = pose * source_.points[i];
+        const double distance_m = finder.find(moved, match);
+        match.residual_m = unlimited_m;
+        if (distance_m <= most_m && match.target != no_point &&
+            passes(i, match.target, moved - target_.points[match.target]))
+          match.residual_m = residual_m(pose, {i, match.target});
+      }
+    });
   };
   std::visit(find_all, target_.search);
 }

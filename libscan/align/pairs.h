@@ -13,9 +13,18 @@
 
 namespace scan {
 
+// Of the reach of a local fit, within which its plane stands for the surface. At the rim of a scan
+// all neighbours lie to one side, and beyond it the plane leaves a curved surface by the square of
+// the distance: all pairs along a rim alike, which no scatter tells.
+inline constexpr double plane_share_of_reach = 0.5;
+
 // The partner of a source point, and how far off it is.
 struct Match {
   std::uint32_t target = no_point;  // nearest, also where it passes no gate: the next guess
+  // Where the source point was when its nearest was last searched for, and how far off at least all
+  // others were: while it has moved less than they are farther, no search is needed.
+  float others_m = 0;
+  Eigen::Vector3f searched_at = Eigen::Vector3f::Zero();
   double residual_m = unlimited_m;  // size of what the method minimises; unlimited: no pair
 };
 
@@ -38,8 +47,9 @@ class PairFinder {
 
   // Writes matches[k], the partner of source point sample[k] at `pose`. What was there before, if
   // anything, is taken for a guess. A pair lies within the options' distance and angle of normals,
-  // where both are known, and along the target's surface within the reach of its local fit: beyond
-  // the rim of a scan the nearest point is one of the rim, which says nothing.
+  // where both are known, and along the target's surface within the reach of its local fit, of a
+  // plane within its share: beyond the rim of a scan the nearest point is one of the rim, which
+  // says nothing.
   void find(const Pose& pose, std::span<const std::uint32_t> sample,
             std::vector<Match>& matches) const;
 

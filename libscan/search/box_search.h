@@ -3,6 +3,7 @@
 // What KdTree and Octree have in common: the search in a tree of boxes.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "libscan/search/neighbour_search.h"
@@ -23,8 +24,16 @@ class BoxSearch {
   std::optional<Neighbour> nearest(const Eigen::Vector3d& query,
                                    double max_distance_m = unlimited_m,
                                    std::uint32_t guess = no_point) const;
-  void k_nearest(const Eigen::Vector3d& query, std::size_t k, std::vector<Neighbour>& found) const;
+  void k_nearest(const Eigen::Vector3d& query, std::size_t k, std::vector<Neighbour>& found,
+                 std::uint32_t guess = no_point) const;
   void within(const Eigen::Vector3d& query, double radius_m, std::vector<Neighbour>& found) const;
+
+  // The points fall into patches of neighbours. Calls body(index, found) for each point of one,
+  // with what k_nearest finds for it, the point itself being one: a patch's points look into the
+  // same leaves, which are found once.
+  using PatchBody = std::function<void(std::uint32_t index, std::vector<Neighbour>& found)>;
+  std::size_t patch_count() const;
+  void k_nearest_in_patch(std::size_t patch, std::size_t k, const PatchBody& body) const;
 
  private:
   std::unique_ptr<BoxTree> tree_;

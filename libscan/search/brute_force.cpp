@@ -42,7 +42,7 @@ std::optional<Neighbour> BruteForce::nearest(const Eigen::Vector3d& query, doubl
 }
 
 void BruteForce::k_nearest(const Eigen::Vector3d& query, std::size_t k,
-                           std::vector<Neighbour>& found) const {
+                           std::vector<Neighbour>& found, std::uint32_t) const {
   // By sorting all, not by the collector of the other models, for which this is the oracle.
   found.clear();
   if (!query.allFinite()) return;

@@ -83,7 +83,7 @@ std::optional<Neighbour> FlannIndex::nearest(const Eigen::Vector3d& query, doubl
 }
 
 void FlannIndex::k_nearest(const Eigen::Vector3d& query, std::size_t k,
-                           std::vector<Neighbour>& found) const {
+                           std::vector<Neighbour>& found, std::uint32_t) const {
   NearestKCollector collector(k, found);
   tree_->visit(query, collector);
   collector.finish();

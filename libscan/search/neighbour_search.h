@@ -32,9 +32,10 @@ inline constexpr std::uint32_t no_point = std::numeric_limits<std::uint32_t>::ma
 
 // `nearest`: within max_distance_m (inclusive), or none. `guess` is the index of a point thought to
 // be near, or anything else: it changes the time only, never the answer. The neighbour that the
-// query had before a small motion saves a part of the search. `k_nearest`: up to k, `within`: all
-// within the radius (inclusive); both sorted by (distance, index) and written over `found`. All are
-// safe to call from many threads. `size` counts the finite points.
+// query had before a small motion saves a part of the search; `k_nearest` takes one, too.
+// `k_nearest`: up to k, `within`: all within the radius (inclusive); both sorted by (distance,
+// index) and written over `found`. All are safe to call from many threads. `size` counts the finite
+// points.
 template <class S>
 concept NeighbourSearch = requires(const S& search, const Eigen::Vector3d& query, std::size_t k,
                                    double distance_m, std::uint32_t guess,
@@ -43,6 +44,7 @@ concept NeighbourSearch = requires(const S& search, const Eigen::Vector3d& query
   { search.nearest(query, distance_m) } -> std::same_as<std::optional<Neighbour>>;
   { search.nearest(query, distance_m, guess) } -> std::same_as<std::optional<Neighbour>>;
   { search.k_nearest(query, k, found) } -> std::same_as<void>;
+  { search.k_nearest(query, k, found, guess) } -> std::same_as<void>;
   { search.within(query, distance_m, found) } -> std::same_as<void>;
 };
 

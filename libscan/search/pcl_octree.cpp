@@ -111,7 +111,7 @@ std::optional<Neighbour> PclOctree::nearest(const Eigen::Vector3d& query, double
 }
 
 void PclOctree::k_nearest(const Eigen::Vector3d& query, std::size_t k,
-                          std::vector<Neighbour>& found) const {
+                          std::vector<Neighbour>& found, std::uint32_t) const {
   NearestKCollector collector(k, found);
   if (tree_->search && k > 0 && query.allFinite())
     tree_->visit(query, tree_->radius_of(query, k), collector);

@@ -21,7 +21,8 @@ class PclOctree {
   std::optional<Neighbour> nearest(const Eigen::Vector3d& query,
                                    double max_distance_m = unlimited_m,
                                    std::uint32_t guess = no_point) const;
-  void k_nearest(const Eigen::Vector3d& query, std::size_t k, std::vector<Neighbour>& found) const;
+  void k_nearest(const Eigen::Vector3d& query, std::size_t k, std::vector<Neighbour>& found,
+                 std::uint32_t guess = no_point) const;
   void within(const Eigen::Vector3d& query, double radius_m, std::vector<Neighbour>& found) const;
 
  private:

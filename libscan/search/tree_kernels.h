@@ -13,9 +13,10 @@
 
 namespace scan {
 
-inline constexpr int node_width = 8;    // children of a node
-inline constexpr int leaf_width = 16;   // points of a leaf
-inline constexpr int tree_depth = 168;  // most nodes between the root and a leaf (octree.cpp)
+inline constexpr int node_width = 8;      // children of a node
+inline constexpr int leaf_width = 16;     // points of a leaf
+inline constexpr int most_in_patch = 64;  // points near one of a patch; more would not pay
+inline constexpr int tree_depth = 168;    // most nodes between the root and a leaf (octree.cpp)
 inline constexpr std::uint32_t nothing = 0xffffffffu;
 inline constexpr std::uint32_t leaf_bit = 0x80000000u;  // a child that is a leaf, by its number
 
@@ -86,6 +87,10 @@ struct TreeKernels {
   // entries are the bits of the squared distance above the place. Returns the limit of the k-th.
   float (*k_nearest)(const TreeView&, const TreeQuery&, int k, int capacity, std::uint64_t* best);
   LeafHits (*next_leaf)(const TreeView&, const TreeQuery&, TreeWalk&);
+  // The places, nearest first, and the number of the given leaves' points that may be among the k
+  // nearest. 0 if the limit holds fewer than k, or too many, or not all that may rival the k-th.
+  int (*nearest_in)(const TreeView&, const TreeQuery&, const std::uint32_t* leaves, int count,
+                    int k, std::uint32_t (&places)[most_in_patch]);
 };
 
 inline constexpr std::uint64_t no_entry = std::uint64_t{0x7f800000} << 32;  // infinitely far

@@ -59,8 +59,9 @@ inline void insert(std::uint64_t entry, std::uint64_t* best, int capacity) {
 }  // namespace
 }  // namespace scan
 
+#include "libscan/search/tree_patch_queries.h"
 #include "libscan/search/tree_queries.h"
 
 namespace scan {
-const TreeKernels avx512_kernels = {"AVX-512", nearest, k_nearest, next_leaf};
+const TreeKernels avx512_kernels = {"AVX-512", nearest, k_nearest, next_leaf, nearest_in};
 }  // namespace scan

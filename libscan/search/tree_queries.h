@@ -54,10 +54,10 @@ float k_nearest(const TreeView& tree, const TreeQuery& query, int k, int capacit
   float limit2 = query.limit2;
   TreeWalk walk;
   Walker walker(tree, query, walk);
-  for (std::uint32_t leaf = walker.first(limit2); leaf != nothing; leaf = walker.next(limit2)) {
+  const auto look_into = [&](std::uint32_t leaf) {
     const Sixteen distance2 = point_distances2(tree.leaves[leaf], walker.query());
     std::uint32_t near = not_above(distance2, limit2);
-    if (near == 0) continue;
+    if (near == 0) return;
     alignas(64) std::uint32_t bits[leaf_width];
     store(distance2, bits);
     for (; near != 0; near &= near - 1) {
@@ -69,7 +69,10 @@ float k_nearest(const TreeView& tree, const TreeQuery& query, int k, int capacit
     __builtin_memcpy(&kth, &kth_bits, sizeof kth);
     const float new_limit2 = widened(kth, query.widening);
     limit2 = new_limit2 < limit2 ? new_limit2 : limit2;
-  }
+  };
+  if (query.first_leaf != nothing) look_into(query.first_leaf);
+  for (std::uint32_t leaf = walker.first(limit2); leaf != nothing; leaf = walker.next(limit2))
+    if (leaf != query.first_leaf) look_into(leaf);
   return limit2;
 }
 

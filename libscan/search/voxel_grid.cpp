@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <unordered_map>
 
 #include "libscan/core/error.h"
 
@@ -14,18 +13,47 @@ namespace {
 
 using Key = std::array<std::int64_t, 3>;
 
-struct KeyHash {
-  std::size_t operator()(const Key& key) const {
-    std::uint64_t hash = 0;
-    for (const std::int64_t k : key) {
-      // The finalizer of splitmix64 (Steele, Lea, Flood, OOPSLA 2014): every bit reaches every bit.
-      hash = (hash ^ static_cast<std::uint64_t>(k)) + 0x9e3779b97f4a7c15u;
-      hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
-      hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
-      hash ^= hash >> 31;
-    }
-    return hash;
+std::uint64_t hash_of(const Key& key) {
+  std::uint64_t hash = 0;
+  for (const std::int64_t k : key) {
+    // The finalizer of splitmix64 (Steele, Lea, Flood, OOPSLA 2014): every bit reaches every bit.
+    hash = (hash ^ static_cast<std::uint64_t>(k)) + 0x9e3779b97f4a7c15u;
+    hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
+    hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
+    hash ^= hash >> 31;
   }
+  return hash;
+}
+
+// Numbers keys by first appearance. Open addressing with linear probing (Knuth, TAOCP 3, 6.4 L).
+class KeyNumbers {
+ public:
+  std::uint32_t number_of(const Key& key) {
+    if (2 * keys_.size() >= slots_.size()) grow();
+    std::uint32_t& slot = slots_[slot_of(key)];
+    if (slot == empty) {
+      slot = static_cast<std::uint32_t>(keys_.size());
+      keys_.push_back(key);
+    }
+    return slot;
+  }
+
+ private:
+  static constexpr std::uint32_t empty = 0xffffffffu;
+  // Where the key is, or else belongs.
+  std::size_t slot_of(const Key& key) const {
+    std::size_t at = hash_of(key) & (slots_.size() - 1);
+    while (slots_[at] != empty && keys_[slots_[at]] != key) at = (at + 1) & (slots_.size() - 1);
+    return at;
+  }
+  void grow() {
+    slots_.assign(2 * slots_.size(), empty);
+    for (std::size_t i = 0; i < keys_.size(); ++i)
+      slots_[slot_of(keys_[i])] = static_cast<std::uint32_t>(i);
+  }
+
+  std::vector<Key> keys_;
+  std::vector<std::uint32_t> slots_ = std::vector<std::uint32_t>(1024, empty);  // a power of two
 };
 
 void check_side(const Bounds& box, double side_m) {
@@ -53,13 +81,12 @@ struct Cubes {
 Cubes assign_cubes(const PointCloud& cloud, const Bounds& box, double side_m) {
   Cubes cubes{finite_points(cloud), {}, {}};
   cubes.cube.reserve(cubes.points.size());
-  std::unordered_map<Key, std::uint32_t, KeyHash> numbers;
+  KeyNumbers numbers;
   for (const std::uint32_t i : cubes.points) {
-    const auto next = static_cast<std::uint32_t>(numbers.size());
-    const auto [entry, is_new] = numbers.try_emplace(key_of(cloud.points[i], box, side_m), next);
-    if (is_new) cubes.count.push_back(0);
-    cubes.cube.push_back(entry->second);
-    cubes.count[entry->second] += 1;
+    const std::uint32_t number = numbers.number_of(key_of(cloud.points[i], box, side_m));
+    if (number == cubes.count.size()) cubes.count.push_back(0);
+    cubes.cube.push_back(number);
+    cubes.count[number] += 1;
   }
   return cubes;
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "libscan/align/loss.h"
+#include "libscan/align/pairs.h"
 #include "tests/align/test_shapes.h"
 
 namespace scan {
@@ -48,7 +49,7 @@ struct OraclePair {
 };
 
 // Of every asked point the nearest of all points, which counts if it is near, beside the target's
-// plane by no more than its fit reaches, and with a normal at most 45 degrees off.
+// plane by no more than its share of the fit's reach, and with a normal at most 45 degrees off.
 std::vector<OraclePair> pairs_by_definition(const Setting& s, std::size_t stride,
                                             std::size_t first) {
   std::vector<OraclePair> pairs;
@@ -65,7 +66,8 @@ std::vector<OraclePair> pairs_by_definition(const Setting& s, std::size_t stride
     const Vector3d m = s.world_from_source.linear() * s.source.normals[i];
     const Vector3d apart = x - s.world_from_target * s.target.points[best];
     const double beside_m = (apart - apart.dot(n) * n).norm();
-    if (least_m > s.options.max_pair_distance_m || beside_m > s.target.fits[best].reach_m ||
+    if (least_m > s.options.max_pair_distance_m ||
+        beside_m > plane_share_of_reach * s.target.fits[best].reach_m ||
         m.dot(n) < std::cos(s.options.max_normal_angle_rad))
       continue;
     pairs.push_back({i, best, std::abs(apart.dot(n))});

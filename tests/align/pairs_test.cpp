@@ -36,8 +36,16 @@ Pose shift(double x, double y, double z) {
 
 // Two sheets, the source twice as wide: what lies beyond the rim has no partner, however near the
 // sheets are; within it all have. The reach of 16 neighbours is 0.16 m at 200 points per m^2.
+// A corner's fit reaches over a quarter of a disc of 16 points, 4.5 spacings: with half of that,
+// 0.16 m, for the gate nothing farther out has a partner. Inside, no place is farther from its
+// nearest point than half a diagonal, 0.7 spacings, while the fits reach over 2.2.
 TEST(PairFinder, PointsBeyondTheRimHaveNoPartner) {
-  const PointCloud target = test::plane(20000, 2);
+  PointCloud target;
+  for (int i = 0; i <= 140; ++i)
+    for (int j = 0; j <= 140; ++j) {
+      target.points.emplace_back(i / 14.0 - 5, j / 14.0 - 5, 0);
+      target.normals.push_back(Vector3d::UnitZ());
+    }
   PointCloud source = test::plane(20000, 3);
   for (Vector3d& x : source.points) x.head<2>() *= 2;
   const Problem problem(source, target);
@@ -45,9 +53,9 @@ TEST(PairFinder, PointsBeyondTheRimHaveNoPartner) {
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const Vector3d at = problem.source.points[i] + problem.source.origin;
     const double out = at.head<2>().cwiseAbs().maxCoeff();
-    if (out > 5.3) {
+    if (out > 5.17) {
       EXPECT_EQ(matches[i].residual_m, unlimited_m) << at.transpose();
-    } else if (out < 4.7) {
+    } else if (out < 5) {
       EXPECT_NEAR(matches[i].residual_m, 0.02, 1e-12) << at.transpose();
     }
   }
@@ -63,6 +71,30 @@ TEST(PairFinder, GuessesChangeNothing) {
   for (std::size_t i = 0; i < cold.size(); ++i) {
     EXPECT_EQ(warm[i].target, cold[i].target);
     EXPECT_EQ(warm[i].residual_m, cold[i].residual_m);
+  }
+}
+
+// Partners kept without a search are still the nearest: through motions of all sizes, to and fro,
+// at coordinates far from zero and small.
+TEST(PairFinder, AWayInManyStepsChangesNothing) {
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    auto [source, target] = test::split(test::bumpy_surface(3000, 4), 5);
+    for (PointCloud* cloud : {&source, &target})
+      for (Vector3d& x : cloud->points) x *= scale;
+    const Problem problem(source, target);
+    std::vector<Match> warm;
+    double step_m = 0.1 * scale;
+    for (int k = 0; k < 40; ++k, step_m *= -0.8) {
+      const Pose pose =
+          local_pose(shift(step_m, 0.3 * step_m, 0.1 * step_m), problem.source, problem.target);
+      problem.finder.find(pose, problem.sample, warm);
+      std::vector<Match> cold;
+      problem.finder.find(pose, problem.sample, cold);
+      for (std::size_t i = 0; i < cold.size(); ++i) {
+        ASSERT_EQ(warm[i].target, cold[i].target) << k << " " << i;
+        ASSERT_EQ(warm[i].residual_m, cold[i].residual_m) << k << " " << i;
+      }
+    }
   }
 }
 

@@ -137,15 +137,16 @@ struct SimulatedPair {
   Pose truth, guess;  // target_from_source
 };
 
-// Scans of side x side points, three quarters of which they share, with noise of an eighth of the
-// spacing; the start is off by 1 degree and 1 cm.
-inline SimulatedPair simulated_pair(ScannerNoise kind, int side, std::uint64_t seed) {
+// Scans of side x side points, three quarters of which they share; the start is off by 1 degree and
+// 1 cm.
+inline SimulatedPair simulated_pair(ScannerNoise kind, int side, std::uint64_t seed,
+                                    double noise_in_spacings = 0.125) {
   const WavySurface surface(seed);
   RandomStream random(seed, 4, 0);
   SimulatedPair pair;
   pair.truth = random_pose(random, 0.5, 1);
   pair.guess = pair.truth * random_pose(random, 0.017, 0.01);
-  const double sigma_m = 0.25 / side;
+  const double sigma_m = noise_in_spacings * 2 / side;
   pair.source = simulated_scan(surface, kind, sigma_m, {0, 0, 0}, side, seed, 0);
   pair.target =
       transformed(pair.truth, simulated_scan(surface, kind, sigma_m, {0.5, 0, 0}, side, seed, 1));

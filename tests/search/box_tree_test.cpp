@@ -52,6 +52,7 @@ struct KernelAnswer {
   float limit2 = 0;
   std::array<std::uint64_t, 16> best{};
   std::vector<std::uint32_t> walk;
+  std::vector<std::uint32_t> in_leaves;  // of all leaves with hits: the ten nearest
   friend bool operator==(const KernelAnswer&, const KernelAnswer&) = default;
 };
 
@@ -65,10 +66,16 @@ KernelAnswer answer(const TreeKernels& kernels, const BoxTree& tree, const Eigen
   of.limit2 = kernels.k_nearest(tree.view(), raw(tree, query_m, unlimited_m), 10, 16, best);
   std::copy(best, best + 16, of.best.begin());
   TreeWalk walk;
+  std::vector<std::uint32_t> leaves;
   for (LeafHits hits{0, 1}; hits.lanes != 0;) {
     hits = kernels.next_leaf(tree.view(), raw(tree, query_m, limit2_m2), walk);
     of.walk.insert(of.walk.end(), {hits.leaf, hits.lanes});
+    if (hits.lanes != 0) leaves.push_back(hits.leaf);
   }
+  std::uint32_t places[most_in_patch];
+  const int count = kernels.nearest_in(tree.view(), raw(tree, query_m, limit2_m2), leaves.data(),
+                                       static_cast<int>(leaves.size()), 10, places);
+  of.in_leaves.assign(places, places + count);
   return of;
 }
 
@@ -116,6 +123,8 @@ TEST(TreeKernels, AnswerLikeBruteForceWithEachInstructionSet) {
             search.k_nearest(query, k, found);
             oracle.k_nearest(query, k, expected);
             EXPECT_EQ(found, expected) << "k " << k;
+            search.k_nearest(query, k, found, 17);
+            EXPECT_EQ(found, expected) << "k " << k << " with a guess";
           }
           const double radius_m = std::sqrt(expected.back().distance2_m2);
           search.within(query, radius_m, found);
