@@ -100,7 +100,7 @@ std::vector<JointCouple> joint_couples(
 JointForm joint_form(const JointCouple& couple, const PreparedCloud& source,
                      const PreparedCloud& target, const Pose& world_from_source,
                      const Pose& world_from_target, const IcpOptions& options, double patch_m,
-                     JointDetail* detail) {
+                     JointDetail* detail, const std::vector<bool>& target_rim) {
   const Pose pose = world_from_target.inverse() * world_from_source;
   const std::vector<std::uint32_t> sample = sample_of(couple, source);
   JointForm form{.source = couple.source, .target = couple.target, .asked = sample.size()};
@@ -109,7 +109,9 @@ JointForm joint_form(const JointCouple& couple, const PreparedCloud& source,
   finder.find(pose, sample, matches);
   const WelschLoss loss{scale_m(couple, finder.median_residual_m(matches), target)};
   form.scale_m = loss.scale_m;
-  const std::vector<Couple> couples = finder.kept(sample, matches, {.loss = loss});
+  std::vector<Couple> couples = finder.kept(sample, matches, {.loss = loss});
+  if (!target_rim.empty())
+    std::erase_if(couples, [&](const Couple& one) { return target_rim[one.target]; });
   const auto least = std::max<double>(least_pairs, options.min_overlap * double(sample.size()));
   if (static_cast<double>(couples.size()) < least) return form;
   form.pairs = couples.size();

@@ -59,10 +59,12 @@ std::vector<JointCouple> joint_couples(
 
 // The form of a couple; none if fewer than options.min_overlap of the asked points count. The scale
 // is that of the residuals, never wider than the couple's last one and never narrower than 0.7 of
-// it: what a narrower one leaves out may be what was to pull.
+// it: what a narrower one leaves out may be what was to pull. Points of `target_rim` (rims.h) are
+// no partners: beyond a scan's end the nearest of them are those that noise along diverging rays
+// has carried outwards, which are the far ones. That bends scan after scan the same way.
 JointForm joint_form(const JointCouple& couple, const PreparedCloud& source,
                      const PreparedCloud& target, const Pose& world_from_source,
                      const Pose& world_from_target, const IcpOptions& options, double patch_m = 0,
-                     JointDetail* detail = nullptr);
+                     JointDetail* detail = nullptr, const std::vector<bool>& target_rim = {});
 
 }  // namespace scan

@@ -11,6 +11,7 @@
 #include "libscan/align/joint_motion.h"
 #include "libscan/align/joint_refinement.h"
 #include "libscan/align/overlaps.h"
+#include "libscan/align/rims.h"
 #include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 
@@ -25,10 +26,9 @@ constexpr double reach_in_spacings = 3;
 // Steps below half a standard error change nothing that can be known.
 constexpr double negligible_square = 0.25;
 constexpr double settled_share = 0.99;
-// Pairs left anywhere what they could not tell. At first all motions of whose apparent information
-// noise may feign two thirds stand as in the guesses; from there the pairs of all scans together
-// decide.
-constexpr double doubtful_excess = 0.5;
+// The loss narrows anew from where the scans came to stand together: what a first narrowing left
+// out at the pairs' poses may be what holds a scan that few motions of its own are told of.
+constexpr int narrowings = 2;
 // Places of the surface at which pulls are added up before their scatter: so many to a scan, enough
 // for shared_noise.h to tell from their own what neighbours share.
 constexpr double places = 2048;
@@ -55,10 +55,10 @@ class Refinement {
   const MultiviewOptions& options_;
   IcpOptions icp_;
   JointPoses out_;
+  std::vector<std::vector<bool>> rims_;  // of each scan
   std::vector<JointCouple> couples_;
   std::vector<JointForm> forms_;
   JointBasis weak_;
-  double least_excess_ = 0;  // see joint_weak_motions
   double last_step_ = std::numeric_limits<double>::infinity();
   double step_share_ = 1;
 };
@@ -74,6 +74,9 @@ Refinement::Refinement(const PreparedScans& scans, std::span<const Pose> poses,
       icp_(options.icp) {
   out_.world_from_local.assign(poses.begin(), poses.end());
   out_.scans.resize(poses.size());
+  rims_.resize(poses.size());
+  parallel_for(
+      poses.size(), [&](std::size_t i) { rims_[i] = rim_points(scans.clouds[i]); }, 1);
   std::vector<double> radii_m;
   double reach_m = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -111,9 +114,9 @@ bool Refinement::find_pairs(std::vector<JointDetail>* details) {
       couples_.size(),
       [&](std::size_t k) {
         const auto [i, j] = std::pair(couples_[k].source, couples_[k].target);
-        all[k] =
-            joint_form(couples_[k], scans_.clouds[i], scans_.clouds[j], out_.world_from_local[i],
-                       out_.world_from_local[j], icp_, patch_m, details ? &more[k] : nullptr);
+        all[k] = joint_form(couples_[k], scans_.clouds[i], scans_.clouds[j],
+                            out_.world_from_local[i], out_.world_from_local[j], icp_, patch_m,
+                            details ? &more[k] : nullptr, rims_[j]);
       },
       1);
   forms_.clear();
@@ -125,7 +128,7 @@ bool Refinement::find_pairs(std::vector<JointDetail>* details) {
     forms_.push_back(all[k]);
     if (details) details->push_back(std::move(more[k]));
   }
-  weak_ = joint_weak_motions(forms_, frame(), least_excess_);
+  weak_ = joint_weak_motions(forms_, frame());
   return settled;
 }
 
@@ -176,10 +179,10 @@ void Refinement::settle(int most_rounds, const Progress& progress) {
 }
 
 void Refinement::run(const Progress& progress) {
-  least_excess_ = doubtful_excess;
-  settle(options_.max_rounds / 2, progress);
-  least_excess_ = 0;
-  settle(options_.max_rounds, progress);
+  for (int narrowing = 1; narrowing <= narrowings; ++narrowing) {
+    for (JointCouple& couple : couples_) couple.scale_m = unlimited_m;
+    settle(options_.max_rounds * narrowing / narrowings, progress);
+  }
   std::vector<JointDetail> details;
   find_pairs(&details);
   summarise(details);

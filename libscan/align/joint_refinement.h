@@ -26,11 +26,10 @@ using JointBasis = Eigen::MatrixXd;
 
 // Orthonormal basis of the motions of all scans together that noise alone may feign to be fixed:
 // those with v^T A v < (1 + e) v^T N v (observability.h), A and N summed over the forms; e is five
-// standard deviations of what chance makes of it where nothing is fixed, at least `least_excess`.
+// standard deviations of what chance makes of it where nothing is fixed.
 // Sylvester's law of inertia counts them by the pivots of A - (1 + e) N; subspace iteration finds
 // them; of more than 48 only what single scans may do, the others held, is found.
-JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame,
-                              double least_excess = 0);
+JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame);
 
 // Twists that minimise the sum of the forms, with no part along `weak`; zero for scans that are not
 // free or in no form.

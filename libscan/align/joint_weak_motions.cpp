@@ -82,8 +82,7 @@ Eigen::MatrixXd own_motions(const JointMatrix& a, const JointMatrix& g) {
 
 }  // namespace
 
-JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame,
-                              double least_excess) {
+JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame) {
   const JointSystem system(forms, frame);
   const auto none = JointBasis(6 * Eigen::Index(frame.centres.size()), 0);
   if (system.rows() == 0) return none;
@@ -92,7 +91,7 @@ JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame
   const std::vector<double> planes = planes_of(forms, frame.centres.size());
   JointMatrix limit = matrix_of(system, system.sum([&](const JointForm& form) {
     const double fewer = std::min(planes[form.source], planes[form.target]);
-    return Matrix6((1 + std::max(least_excess, chance_excess(fewer))) * form.noise);
+    return Matrix6((1 + chance_excess(fewer)) * form.noise);
   }));
   const double least = rounding_share * std::max(apparent.diagonal().mean(), 1e-300);
   for (Eigen::Index i = 0; i < limit.rows(); ++i) limit.coeffRef(i, i) += least;

@@ -16,12 +16,12 @@ struct Turntable {
   std::vector<Pose> truth, guesses;
 };
 
-// `count` views around z, each of the half that faces it, with points of its own.
-inline Turntable turntable(int count, double sigma_m) {
+// `count` views around z, each of the half that faces it, with points of its own, so many all round.
+inline Turntable turntable(int count, double sigma_m, std::size_t points = 12000) {
   Turntable t;
   for (int i = 0; i < count; ++i) {
     const double angle = 2 * std::numbers::pi * i / count;
-    PointCloud all = lump(12000, 100 + std::uint64_t(i));
+    PointCloud all = lump(points, 100 + std::uint64_t(i));
     const Vector3d view(std::cos(angle), std::sin(angle), 0.3);
     std::vector<std::uint32_t> seen;
     for (std::uint32_t k = 0; k < all.size(); ++k)

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// Many scans into one frame: errors, seconds and memory on the ten bunny scans and on a simulated
-// full turn.
+// Many scans into one frame: errors, seconds and memory on long paths, simulated full turns and the
+// ten bunny scans.
 //
 //   multiview_benchmark [DATA]   DATA: the folder that holds stanford-bunny
 #include <cstdio>
@@ -18,6 +18,7 @@
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/verify/pose_error.h"
+#include "tests/align/simulated_path.h"
 #include "tests/align/turntable.h"
 
 namespace scan {
@@ -96,43 +97,72 @@ void bunny(const std::filesystem::path& folder) {
   for (std::uint64_t seed = 2; seed <= 5; ++seed) try_with(8, 8, seed, false);
 }
 
-// What is left when the poses of neighbours are chained around the turn.
-void tell_loop(const char* name, const std::vector<Pose>& to_next) {
+// What is left when the poses of neighbours are chained around the turn, none for poses in one
+// frame, and how far off the worst of them moves its scan's middle.
+void tell_loop(const char* name, const std::vector<Pose>& to_next, const std::vector<Pose>& truth,
+               const std::vector<PointCloud>& clouds) {
   Pose loop = Pose::Identity();
-  for (const Pose& pose : to_next) loop = loop * pose;
-  std::printf("  %-28s loop error %8.4f deg %8.4f mm\n", name,
+  double worst_m = 0;
+  for (std::size_t i = 0; i < to_next.size(); ++i) {
+    loop = loop * to_next[i];
+    const Eigen::Vector3d middle = bounds_of(clouds[(i + 1) % clouds.size()].points).center();
+    worst_m = std::max(worst_m, (to_next[i] * middle - truth[i] * middle).norm());
+  }
+  std::printf("  %-16s loop error %8.4f deg %8.4f mm, worst link %.3f mm\n", name,
               deg_from_rad(rotation_distance_rad(loop, Pose::Identity())),
-              1e3 * loop.translation().norm());
+              1e3 * loop.translation().norm(), 1e3 * worst_m);
 }
 
-void full_turn() {
+void full_turn(int scans) {
   std::printf(
-      "full turn of 24 scans, a lump of 1 m radius, noise 1 mm, guesses off by 3 deg and "
-      "40 mm\n");
-  test::Turntable turn = test::turntable(24, 0.001);
+      "full turn of %d scans, a lump of 1 m radius, noise 1 mm, guesses off by 3 deg and 40 mm\n",
+      scans);
+  test::Turntable turn = test::turntable(scans, 0.001);
   Views views{{}, std::move(turn.clouds), std::move(turn.truth)};
   for (std::size_t i = 0; i < views.clouds.size(); ++i) views.names.push_back(std::to_string(i));
-  std::vector<Pose> chain, joint;
   const MultiviewResult result = align_scans(views.clouds, turn.guesses);
+  std::vector<Pose> chain, joint, truth;
   for (std::size_t i = 0; i < views.clouds.size(); ++i) {
     const std::size_t next = (i + 1) % views.clouds.size();
     const auto relative = [&](const std::vector<Pose>& poses) {
       return Pose(poses[i].inverse() * poses[next]);
     };
+    truth.push_back(relative(views.truth));
     chain.push_back(
         icp(views.clouds[next], views.clouds[i], relative(turn.guesses)).target_from_source);
     joint.push_back(result.scans[i].world_from_scan.inverse() * result.scans[next].world_from_scan);
   }
-  tell_loop("chain of pairs", chain);
-  tell_loop("joint poses", joint);
+  tell_loop("chain of pairs", chain, truth, views.clouds);
+  tell_loop("joint poses", joint, truth, views.clouds);
   tell(views, result, false);
+}
+
+// Squares of 2 m of 30 x 30 points in a row, 0.8 m apart: each meets two others on either side.
+void long_path(std::size_t scans) {
+  const test::SimulatedViews path =
+      test::simulated_path(test::ScannerNoise::lidar, scans, 30, 0.8, 1);
+  const MultiviewResult result = align_scans(path.clouds, path.guesses);
+  std::size_t tied = 0;
+  for (const ScanPose& scan : result.scans)
+    tied += scan.stop == Stop::converged || scan.stop == Stop::degenerate;
+  double sum = 0, links = 0;
+  for (const ScanEdge& edge : result.edges)
+    if (edge.target == edge.source + 1 && edge.accepted && edge.stop == Stop::converged) {
+      sum += test::normalised_link_error2(result, path.truth, edge) / 6;
+      ++links;
+    }
+  std::printf(
+      "path of %4zu scans: %4zu tied, link errors e^T I e / 6 %.2f, %2d rounds, %6.2f s, %5.0f MiB "
+      "at most so far\n",
+      scans, tied, sum / links, result.rounds, result.cost.seconds, peak_memory_mib());
 }
 
 }  // namespace
 }  // namespace scan
 
 int main(int count, char** arguments) {
-  scan::full_turn();
+  for (const std::size_t scans : {100, 300, 1000}) scan::long_path(scans);
+  for (const int scans : {24, 36}) scan::full_turn(scans);
   const std::filesystem::path data =
       count > 1 ? arguments[1] : LIBSCAN_SOURCE_DIR "/../shared/data";
   if (std::filesystem::exists(data / "stanford-bunny/data/bun.conf"))

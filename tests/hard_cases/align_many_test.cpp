@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/align/simulated_path.h"
+#include "tests/align/turntable.h"
 
 namespace scan {
 namespace {
@@ -30,6 +31,28 @@ TEST(HardPath, ThreeHundredScansInARowStayTied) {
   // A mean of chi-squares over six degrees of freedom has a standard error of sqrt(2 / 6 / 270)
   // = 0.035; a tenth of bias is what calibration allows a pair.
   EXPECT_LT(sum / links, 1 + 0.1 + 3 * 0.035);
+}
+
+// What the errors of 36 pairs leave open when they are chained around a full turn, as far as a
+// point 1.5 m away from the axis is moved, is more than the 2 mm that curvature and noise of 1 mm
+// allow each scan (AlignScans.ATurntableClosesItsLoop); of joint poses none may be farther off.
+TEST(HardTurn, ThirtySixScansCloseTheirLoop) {
+  constexpr int scans = 36;
+  const test::Turntable turn = test::turntable(scans, 0.001, 3000);
+  Pose loop = Pose::Identity();
+  for (std::size_t i = 0; i < scans; ++i) {
+    const std::size_t next = (i + 1) % scans;
+    const Pose guess = turn.guesses[i].inverse() * turn.guesses[next];
+    loop = loop * icp(turn.clouds[next], turn.clouds[i], guess).target_from_source;
+  }
+  EXPECT_GT(loop.translation().norm() + 1.5 * rotation_distance_rad(loop, Pose::Identity()), 2e-3);
+  const MultiviewResult result = align_scans(turn.clouds, turn.guesses);
+  EXPECT_EQ(result.stop, Stop::converged);
+  double worst_m = 0;
+  for (std::size_t i = 0; i < scans; ++i)
+    for (const Eigen::Vector3d& x : turn.clouds[i].points)
+      worst_m = std::max(worst_m, (result.scans[i].world_from_scan * x - turn.truth[i] * x).norm());
+  EXPECT_LT(worst_m, 2e-3);
 }
 
 }  // namespace
