@@ -41,7 +41,8 @@ std::vector<double> noise_shares(const PlacePulls& places, std::size_t scans,
     if (dimensions == 0) continue;
     const Matrix6 whitening = roots.asDiagonal() * solver.eigenvectors().transpose();
     for (Vector6& pull : pulls[i]) pull = (whitening * pull).eval();
-    shares[i] = noise_sharing(pulls[i], at[i], dimensions);
+    // Not below what each point errs by alone: chance must not make all ties of a scan surer.
+    shares[i] = std::max(1.0, noise_sharing(pulls[i], at[i], dimensions));
   }
   return shares;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/align/joint_solver.h"
 
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 
 #include "libscan/align/selected_inverse.h"
@@ -53,11 +54,24 @@ JointMatrix damped(const JointMatrix& a, double share) {
   return sum;
 }
 
-std::unique_ptr<JointFactor> factor_of(const JointMatrix& a) {
-  auto factor = std::make_unique<JointFactor>(a);
-  if (factor->info() != Eigen::Success)
+struct JointFactor::Cholesky {
+  Eigen::SimplicialLDLT<JointMatrix> ldlt;
+};
+
+JointFactor::JointFactor(const JointMatrix& a) : cholesky_(std::make_unique<Cholesky>()) {
+  cholesky_->ldlt.compute(a);
+  if (cholesky_->ldlt.info() != Eigen::Success)
     throw Error(Trouble::computation, "align_scans: the joint system is singular");
-  return factor;
+}
+
+JointFactor::~JointFactor() = default;
+
+Eigen::MatrixXd JointFactor::solve(const Eigen::MatrixXd& b) const {
+  return cholesky_->ldlt.solve(b);
+}
+
+Eigen::Index JointFactor::negatives() const {
+  return (cholesky_->ldlt.vectorD().array() < 0).count();
 }
 
 WithholdingSolver::WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak)
@@ -65,7 +79,7 @@ WithholdingSolver::WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak)
   blocks_ = weak_.cols() > 0 && each_of_one_scan(weak_);
   if (!blocks_) {
     held_ = damped(a, rounding_share);
-    factor_ = factor_of(held_);
+    factor_ = std::make_unique<JointFactor>(held_);
     if (weak_.cols() == 0) return;
     reply_ = factor_->solve(weak_);
     response_.compute(weak_.transpose() * reply_);
@@ -77,7 +91,7 @@ WithholdingSolver::WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak)
   const double scale = std::max(a.diagonal().mean(), 1e-300);
   const JointMatrix projected = projector_ * a * projector_;
   held_ = damped(projected + scale * (rest - projector_), rounding_share);
-  factor_ = factor_of(held_);
+  factor_ = std::make_unique<JointFactor>(held_);
 }
 
 Eigen::MatrixXd WithholdingSolver::solve(const Eigen::MatrixXd& b) const {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <memory>
 #include <vector>
@@ -14,15 +13,27 @@
 namespace scan {
 
 using JointMatrix = Eigen::SparseMatrix<double>;
-using JointFactor = Eigen::SimplicialLDLT<JointMatrix>;
 
 JointMatrix matrix_of(const JointSystem& system, const JointEntries& entries);
 
 // A + a share of its diagonal, so that what nothing holds stays where it is.
 JointMatrix damped(const JointMatrix& a, double share);
 
-// Throws scan::Error (computation) for a singular matrix.
-std::unique_ptr<JointFactor> factor_of(const JointMatrix& a);
+// L D L^T of a symmetric matrix. Throws scan::Error (computation) for a singular one.
+class JointFactor {
+ public:
+  explicit JointFactor(const JointMatrix& a);
+  ~JointFactor();
+  JointFactor(const JointFactor&) = delete;
+  JointFactor& operator=(const JointFactor&) = delete;
+
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+  Eigen::Index negatives() const;  // eigenvalues below zero, by Sylvester's law of inertia
+
+ private:
+  struct Cholesky;
+  std::unique_ptr<Cholesky> cholesky_;
+};
 
 // Solutions of A x = b in least squares with no part along orthonormal `weak` motions. Where each
 // is of one scan, with P = I - W W^T these are (P A P + s W W^T)^-1 P b for any s, as sparse as A;

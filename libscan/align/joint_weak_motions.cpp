@@ -47,14 +47,14 @@ double chance_excess(double planes) {
 // The `count` least v^T A v / v^T G v, by inverse iteration on a subspace with Rayleigh-Ritz.
 Eigen::MatrixXd least_motions(const JointMatrix& a, const JointMatrix& g, Eigen::Index count) {
   const Eigen::Index columns = std::min(a.rows(), count + spare_columns);
-  const auto factor = factor_of(damped(a, rounding_share));
+  const JointFactor factor(damped(a, rounding_share));
   Eigen::MatrixXd x(a.rows(), columns);  // any start that has a part of all will do
   for (Eigen::Index i = 0; i < x.rows(); ++i)
     for (Eigen::Index k = 0; k < columns; ++k)
       x(i, k) = std::sin(1.0 + 0.7 * double(i + 1) * double(k + 1));
   Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
   for (int round = 0; round < subspace_rounds; ++round) {
-    x = orthonormal(factor->solve(Eigen::MatrixXd(g * x)));
+    x = orthonormal(factor.solve(g * x));
     ritz.compute(x.transpose() * (a * x), x.transpose() * (g * x));
     x = (x * ritz.eigenvectors()).eval();
   }
@@ -95,10 +95,7 @@ JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame
   }));
   const double least = rounding_share * std::max(apparent.diagonal().mean(), 1e-300);
   for (Eigen::Index i = 0; i < limit.rows(); ++i) limit.coeffRef(i, i) += least;
-  const JointFactor factor(apparent - limit);
-  if (factor.info() != Eigen::Success)
-    throw Error(Trouble::computation, "align_scans: the joint information is singular");
-  const Eigen::Index count = (factor.vectorD().array() < 0).count();
+  const Eigen::Index count = JointFactor(apparent - limit).negatives();
   if (count == 0) return none;
   return system.expanded(count > most_together ? own_motions(apparent, limit)
                                                : least_motions(apparent, limit, count));

@@ -16,6 +16,9 @@ namespace {
 // empty: then the wide ones tell alone.
 constexpr std::size_t wide_patches = 64, narrow_patches = 4 * wide_patches;
 constexpr std::size_t least_points_of_patch = 4;
+// Noise of their own is estimated at 1 +- 0.32 (6.5 / 64 below). Cut off at 1 the inverses of its
+// estimates would have a mean of 0.87, cut off 1.5 sigma below 0.99.
+constexpr double least_sharing = 1 / (1 + 1.5 * 0.32);
 
 class Patches {
  public:
@@ -87,7 +90,7 @@ double noise_sharing(std::span<const Vector6> pulls, std::span<const Eigen::Vect
     variance = 6.5;
   }
   // The mean of the inverse is above the inverse of the mean by the variance.
-  return std::max(1.0, root * root * (1 + variance / wide_patches));
+  return std::max(least_sharing, root * root * (1 + variance / wide_patches));
 }
 
 }  // namespace scan

@@ -10,8 +10,9 @@
 
 namespace scan {
 
-// The variance of the sum of `pulls` over the sum of their variances, at least 1: of so many
-// pairs all but one are idle. Its inverse has the right mean. `pulls` lie at `at`, metres, sum to
+// An estimate of the variance of the sum of `pulls` over the sum of their variances: of so many
+// pairs all but one are idle. Its inverse has the right mean, so that of noise of their own, where
+// the truth is 1, it is now above, now below. `pulls` lie at `at`, metres, sum to
 // zero (an estimate has followed them) and are whitened: the sum of p p^T is the identity in
 // `dimensions` of the six coordinates, the others are zero.
 //

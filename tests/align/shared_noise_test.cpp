@@ -60,7 +60,7 @@ Pulls pulls_sharing(int width, std::uint64_t seed) {
 // A window of w x w points makes the sum's variance w^2 times that of noise of their own. The
 // inverse of one estimate varies by 6.5 / 64 = 0.32^2, the mean over 40 by 0.05, of which three.
 TEST(NoiseSharing, OfAWindowIsItsArea) {
-  for (const int width : {2, 3, 5}) {
+  for (const int width : {1, 2, 3, 5}) {
     double mean = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
       const Pulls made = pulls_sharing(width, seed);
@@ -70,17 +70,12 @@ TEST(NoiseSharing, OfAWindowIsItsArea) {
   }
 }
 
-// Never more sure than of noise of their own; estimates above, half of all, stay within three
-// sigma.
-TEST(NoiseSharing, IsAboutOneForNoiseOfTheirOwn) {
-  double mean = 0;
+// Nor far below one, where chance would have it.
+TEST(NoiseSharing, IsNeverFarBelowOne) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const Pulls made = pulls_sharing(1, seed);
-    const double ratio = noise_sharing(made.pulls, made.at, 6);
-    EXPECT_GE(ratio, 1);
-    mean += ratio / 40;
+    EXPECT_GT(noise_sharing(made.pulls, made.at, 6), 2.0 / 3);
   }
-  EXPECT_LT(mean, 1.1 + 0.15 + 0.15);
 }
 
 // The order of the points means nothing.
@@ -93,10 +88,10 @@ TEST(NoiseSharing, DoesNotDependOnTheOrder) {
 }
 
 TEST(NoiseSharing, OfFewOrNoPullsIsFinite) {
-  EXPECT_GE(noise_sharing({}, {}, 6), 1);
+  EXPECT_GT(noise_sharing({}, {}, 6), 0.5);
   const std::vector<Vector6> pulls(3, Vector6::Zero());
   const std::vector<Eigen::Vector3d> at(3, Eigen::Vector3d::Zero());
-  EXPECT_GE(noise_sharing(pulls, at, 6), 1);
+  EXPECT_GT(noise_sharing(pulls, at, 6), 0.5);
 }
 
 }  // namespace

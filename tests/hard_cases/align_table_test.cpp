@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <numeric>
 #include <set>
 
 #include "tests/align/icp_methods.h"
@@ -65,8 +66,14 @@ std::vector<HardCase> input_cases() {
     cases.push_back(bumpy(share < 0.1 ? "H1 1 % not finite" : "H1 50 % not finite"));
     spoil(cases.back().source, share), spoil(cases.back().target, share);
   }
-  cases.push_back(bumpy("H2 five points", {Stop::too_few_points}));
-  cases.back().source = subset(cases.back().source, std::vector<std::uint32_t>{0, 1, 2, 3, 4});
+  cases.push_back(bumpy("H1 nothing finite", {Stop::too_few_points}));
+  spoil(cases.back().source, 1);
+  for (const std::uint32_t count : {0u, 1u, 5u}) {
+    cases.push_back(bumpy("H2 points: " + std::to_string(count), {Stop::too_few_points}));
+    std::vector<std::uint32_t> first(count);
+    std::iota(first.begin(), first.end(), 0u);
+    cases.back().source = subset(cases.back().source, first);
+  }
   cases.push_back(bumpy("H3 no overlap", {Stop::no_correspondences}));
   cases.back().guess = Eigen::Translation3d(100, 0, 0) * cases.back().guess;
   cases.push_back(bumpy("H4 two iterations", {Stop::iteration_limit}));
@@ -84,6 +91,17 @@ std::vector<HardCase> input_cases() {
     n = Eigen::AngleAxisd(0.52, Vector3d::UnitX()) * n;
   cases.push_back(bumpy("H23 sheared guess"));
   cases.back().guess.linear()(0, 1) += 0.01;
+  // Terraces of planes, all facing the same way: where a cloud lies along them is lost.
+  for (const int spacings : {2, 5}) {
+    cases.push_back(
+        bumpy("steps of " + std::to_string(spacings) + " spacings", {Stop::degenerate}));
+    if (spacings == 5) cases.back().wanted.insert(Stop::iteration_limit);
+    const double step_m = spacings * 0.07;
+    for (PointCloud* cloud : {&cases.back().source, &cases.back().target}) {
+      for (Vector3d& x : cloud->points) x.z() = step_m * std::round(x.z() / step_m);
+      cloud->normals.clear();
+    }
+  }
   return cases;
 }
 
@@ -197,7 +215,10 @@ double slide_m(const HardCase& hard) {
 }
 
 void run(const HardCase& hard) {
-  std::printf("| %-28s |", hard.name.c_str());
+  std::string wanted;
+  for (const Stop stop : hard.wanted)
+    wanted += (wanted.empty() ? "" : " or ") + std::string(name_of(stop));
+  std::printf("| %-28s | %-32s |", hard.name.c_str(), wanted.c_str());
   for (const IcpMethod method : test::icp_methods) {
     IcpOptions options = hard.options;
     options.method = method;
@@ -207,8 +228,9 @@ void run(const HardCase& hard) {
     EXPECT_TRUE(hard.wanted.contains(result.stop)) << what << ": " << name_of(result.stop);
     EXPECT_TRUE(result.target_from_source.matrix().allFinite()) << what;
     EXPECT_TRUE(result.information.allFinite()) << what;
-    EXPECT_EQ(result.stop == Stop::degenerate, !result.weak_directions.empty()) << what;
+    EXPECT_TRUE(result.stop != Stop::degenerate || !result.weak_directions.empty()) << what;
     if (result.stop == Stop::converged) {
+      EXPECT_TRUE(result.weak_directions.empty()) << what;
       const double tolerance_m = method == IcpMethod::point_to_point
                                      ? std::min(hard.scale * spacing_tolerance_m, slide_m(hard))
                                      : hard.scale * plane_tolerance_m;
@@ -229,8 +251,9 @@ void run(const HardCase& hard) {
 
 void run_all(const std::vector<HardCase>& cases) {
   std::printf(
-      "| case                         | point-to-point     | point-to-plane     | symmetric"
-      "          | plane-to-plane     |\n");
+      "| case                         | wanted                           | point-to-point    "
+      " "
+      "| point-to-plane     | symmetric          | plane-to-plane     |\n");
   for (const HardCase& hard : cases) run(hard);
 }
 
