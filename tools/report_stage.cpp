@@ -20,7 +20,7 @@ void write_report(const std::filesystem::path& run, const std::filesystem::path&
     html = report_page(record, twin);
   } catch (const nlohmann::json::exception& error) {
     throw Error(Trouble::input,
-                run.string() + ": a file of it has not what a run writes: " + error.what());
+                run.string() + ": a file in it holds not what a run writes: " + error.what());
   }
   write_file(page, html);
   write_json(std::filesystem::path(page).replace_extension(".json"), twin);

@@ -185,15 +185,17 @@ TEST(Report, OfARunCutShortNamesWhatIsMissing) {
 
 TEST(Report, OfBrokenFilesIsOneError) {
   const struct {
-    std::string file, content;
-  } cases[] = {{"verdict.json", "{ \"measurements\": [ {"},
-               {"verdict.json", "[]"},
-               {"verdict.json", "{ \"measurements\": [ { \"name\": 3 } ], \"pass\": true }"},
-               {"alignment.json", "{}"},
-               {"effects.json", "7"},
-               {"pose_trace.json", "{ \"steps\": [ { \"step\": \"guess\" } ] }"},
-               {"poses.tum", "0 0 0 0 0 0 0 1\n"},
-               {"surface.ply", "ply\n"}};
+    std::string file, content, says;
+  } cases[] = {
+      {"verdict.json", "{ \"measurements\": [ {", "verdict.json: is no JSON"},
+      {"verdict.json", "[]", "verdict.json: is no such file: must hold measurements and pass"},
+      {"verdict.json", "{ \"measurements\": [ { \"name\": 3 } ], \"pass\": true }",
+       "not what a run writes"},
+      {"alignment.json", "{}", "alignment.json: is no such file: must hold scans"},
+      {"effects.json", "7", "effects.json: is no such file: must be a list"},
+      {"pose_trace.json", "{ \"steps\": [ { \"step\": \"guess\" } ] }", "not what a run writes"},
+      {"poses.tum", "0 0 0 0 0 0 0 1\n", "poses.tum: has 1 poses for 8 scans"},
+      {"surface.ply", "ply\n", "surface.ply"}};
   for (const auto& one : cases) {
     const Folder folder;
     const fs::path run = copy_of_run(folder);
@@ -201,6 +203,7 @@ TEST(Report, OfBrokenFilesIsOneError) {
     const Written report = report_of(run, folder);
     EXPECT_EQ(report.outcome.exit_code, input) << one.file << " " << one.content;
     EXPECT_TRUE(holds(report.outcome.err, "error: ")) << report.outcome.err;
+    EXPECT_TRUE(holds(report.outcome.err, one.says)) << one.says << "\n" << report.outcome.err;
     EXPECT_EQ(std::count(report.outcome.err.begin(), report.outcome.err.end(), '\n'), 1)
         << report.outcome.err;
     EXPECT_FALSE(fs::exists(folder / "out.html"));
@@ -223,10 +226,13 @@ TEST(Report, TakesADataSheetAndAStudy) {
              "predicted": 1.5e-5 } ] })");
   spill(folder / "study.json",
         R"({ "figure": "accuracy_rms", "unit": "m", "tolerance": 0.001, "machine": "a machine",
-             "threads": 2, "sources": [], "advice": { "text": "Take this.", "meets": true },
-             "runs": [ { "settings": { "reconstruct/depth": 5 }, "error_m": 0.0005,
+             "threads": 2, "seconds": "all",
+             "cases": [ { "name": "", "sources": [],
+                          "advice": { "text": "Take this.", "meets": true } } ],
+             "runs": [ { "case": "", "settings": { "reconstruct/depth": 5 }, "error_m": 0.0005,
                "least_error": 0.0004, "most_error": 0.0006, "count": 2, "seconds": 1.5,
-               "stage_seconds": { "align": 1.5 }, "trouble": "", "on_front": true } ] })");
+               "stages": { "align": { "seconds": 1.5, "peak_mib": 100 } }, "trouble": "",
+               "on_front": true } ] })");
   const Written report = report_of(small_run(), folder,
                                    {"--artefacts", (folder / "sheet.json").string(), "--tradeoff",
                                     (folder / "study.json").string()});

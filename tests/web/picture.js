@@ -5,7 +5,8 @@
 'use strict';
 
 // lit: share of pixels that are not white; colours: how many of 32^3; blue, red: shares of pixels
-// in which that channel leads by 25 levels; cells: share of lit pixels in each of 16 x 10 cells.
+// in which that channel leads by 25 levels; cells: share of lit pixels in each of 16 x 10 cells;
+// warmth: mean of red less blue in each.
 async function look(base64) {
   const image = new Image();
   image.src = `data:image/png;base64,${base64}`;
@@ -14,13 +15,15 @@ async function look(base64) {
   const context = new OffscreenCanvas(width, height).getContext('2d');
   context.drawImage(image, 0, 0);
   const rgba = context.getImageData(0, 0, width, height).data;
-  const cells = new Array(160).fill(0), colours = new Set();
+  const cells = new Array(160).fill(0), warmth = new Array(160).fill(0), colours = new Set();
   let lit = 0, blue = 0, red = 0;
   for (let i = 0; i < rgba.length; i += 4) {
     if (rgba[i] >= 250 && rgba[i + 1] >= 250 && rgba[i + 2] >= 250) continue;
     const x = i / 4 % width, y = Math.floor(i / 4 / width);
     ++lit;
-    cells[16 * Math.floor(10 * y / height) + Math.floor(16 * x / width)] += 1;
+    const cell = 16 * Math.floor(10 * y / height) + Math.floor(16 * x / width);
+    cells[cell] += 160 / (width * height);
+    warmth[cell] += (rgba[i] - rgba[i + 2]) * 160 / (width * height);
     colours.add((rgba[i] >> 3) << 10 | (rgba[i + 1] >> 3) << 5 | rgba[i + 2] >> 3);
     if (rgba[i + 2] > rgba[i] + 25) ++blue;
     if (rgba[i] > rgba[i + 2] + 25) ++red;
@@ -28,7 +31,7 @@ async function look(base64) {
   window.pictures = window.pictures || [];
   const id = window.pictures.push({width, height, rgba}) - 1, all = width * height;
   return {id, lit: lit / all, colours: colours.size, blue: blue / all, red: red / all,
-          cells: cells.map(count => 160 * count / all)};
+          cells, warmth};
 }
 
 // Share of pixels that differ by more than 12 levels in some channel.
@@ -58,4 +61,13 @@ function commonCells(a, b) {
   return both / either;
 }
 
-module.exports = {structureOf, changedShare, commonCells};
+// Correlation of the cells' warmth: 1 for the same colours in the same places.
+function commonWarmth(a, b) {
+  const mean = list => list.reduce((sum, v) => sum + v, 0) / list.length;
+  const [ma, mb] = [mean(a.warmth), mean(b.warmth)];
+  const product = (u, mu, v, mv) => u.reduce((sum, x, k) => sum + (x - mu) * (v[k] - mv), 0);
+  return product(a.warmth, ma, b.warmth, mb) /
+      Math.sqrt(product(a.warmth, ma, a.warmth, ma) * product(b.warmth, mb, b.warmth, mb));
+}
+
+module.exports = {structureOf, changedShare, commonCells, commonWarmth};

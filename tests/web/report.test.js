@@ -10,7 +10,7 @@ const fs = require('node:fs');
 const {after, before, test} = require('node:test');
 const {pathToFileURL} = require('node:url');
 const {chromium} = require(process.env.PLAYWRIGHT || 'playwright-core');
-const {structureOf, changedShare, commonCells} = require('./picture.js');
+const {structureOf, changedShare, commonCells, commonWarmth} = require('./picture.js');
 
 const report = process.env.LIBSCAN_REPORT;
 const twin = JSON.parse(fs.readFileSync(report.replace(/\.html$/, '.json'), 'utf8'));
@@ -74,10 +74,12 @@ test('the canvas is lit as our own ray caster lights the picture behind it', asy
   await page.check('#pins');
   assert.ok(drawn.lit > 0.08 && drawn.lit < 0.8, `lit ${drawn.lit}`);
   assert.ok(drawn.colours > 100, `${drawn.colours} colours`);
-  assert.ok(drawn.blue > 0.001 && drawn.red > 0.001, `blue ${drawn.blue}, red ${drawn.red}`);
+  assert.ok(drawn.blue + drawn.red > 0.001, `blue ${drawn.blue}, red ${drawn.red}`);
   // One is seen in perspective and somewhat smaller: most of what is lit must still be common.
-  const common = commonCells(drawn, picture);
+  const common = commonCells(drawn, picture), warmth = commonWarmth(drawn, picture);
   assert.ok(common > 0.5, `common ${common}`);
+  assert.ok(warmth > 0.5, `warmth ${warmth}`);
+  console.log(`common cells ${common.toFixed(2)}, common warmth ${warmth.toFixed(2)}`);
 });
 
 test('every choice of colour changes the picture', async () => {

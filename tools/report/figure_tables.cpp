@@ -65,6 +65,15 @@ bool is_close(const ordered_json& m) {
          limit < interval[1].get<double>();
 }
 
+std::string what_it_is(const ordered_json& m) {
+  const ordered_json definition = m.value("definition", ordered_json());
+  std::string html;
+  if (definition.is_string() && !definition.get<std::string>().empty())
+    html = escaped(definition.get<std::string>()) + "<br>";
+  return html + "<span class=\"quiet\">" + escaped(m.value("over", "")) + " (" +
+         std::to_string(m.value("count", 0ul)) + ")</span>";
+}
+
 std::string verdict_cell(const ordered_json& m) {
   if (!is_limited(m)) return "<td></td>";
   return "<td class=\"verdicts\">" + tag(m.value("pass", false)) +
@@ -136,13 +145,11 @@ std::string figure_table(const std::string& caption, const ordered_json& measure
     const std::string unit = m.value("unit", "");
     rows += "<tr>" + name_cell(m) + exact_cell(m.at("value"), unit) + interval_cell(m, unit);
     if (predicted) rows += exact_cell(m.value("predicted", ordered_json()), unit);
-    rows += limit_cell(m, unit) + verdict_cell(m) +
-            cell(m.value("over", "") + " (" + std::to_string(m.value("count", 0ul)) + ")") +
-            "</tr>\n";
+    rows += limit_cell(m, unit) + verdict_cell(m) + "<td>" + what_it_is(m) + "</td></tr>\n";
   }
   std::vector<std::string> headings = {"figure", "#value", "#95 % interval"};
   if (predicted) headings.push_back("#predicted");
-  headings.insert(headings.end(), {"#limit", "verdict", "taken over (how many)"});
+  headings.insert(headings.end(), {"#limit", "verdict", "what it is, over what (how many)"});
   return rows.empty() ? "" : table(caption, headings, rows);
 }
 

@@ -4,11 +4,9 @@
 
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
-#include "libscan/io/scan_file.h"
+#include "libscan/io/surface_file.h"
 #include "libscan/io/truth_file.h"
-#include "libscan/reconstruct/support.h"
 #include "libscan/verify/surface_error.h"
-#include "tools/inputs.h"
 #include "tools/run_files.h"
 #include "tools/verify_stage.h"
 
@@ -96,7 +94,7 @@ void hold_against_truth(const fs::path& run, RunRecord& record) {
     throw Error(Trouble::input, truth_path(run).string() + ": knows " +
                                     std::to_string(truth.scans.size()) + " scans of " +
                                     std::to_string(record.scans.size()));
-  const RunResult result{record.scans, record.world_from_scan, {}};
+  const RunResult result{.scans = record.scans, .world_from_scan = record.world_from_scan};
   move_world(true_world_from_world(result, truth), record);
   if (!record.surface.empty())
     record.deviations_m = deviations_m(record.surface.vertices, truth.surface);
@@ -121,14 +119,14 @@ RunRecord read_record(const fs::path& run, const fs::path& artefacts, const fs::
   check_shape(run, record);
   read_scans(run, record);
   if (!record.world_from_scan.empty()) read_steps(run, record);
-  if (fs::exists(run / "surface.ply"))
-    record.surface = read_mesh(run / "surface.ply");
-  else
+  if (fs::exists(run / "surface.ply")) {
+    SupportedMesh surface = read_supported_mesh(run / "surface.ply");
+    record.surface = std::move(surface.mesh);
+    record.support_m = std::move(surface.support_m);
+  } else {
     record.missing.push_back("surface.ply is not there: no map of deviations can be drawn");
+  }
   hold_against_truth(run, record);
-  if (!record.surface.empty() && !record.world_from_scan.empty())
-    record.support_m =
-        distance_to_points(record.surface, joined(record.scans, record.world_from_scan).points);
   return record;
 }
 

@@ -18,7 +18,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double surface_share = 0.6;
-constexpr double kept_share = 0.05;  // of the surface's points, for the worst deviations
+constexpr double kept_share = 0.01;  // of the surface's points, for the worst deviations
 constexpr int colour_steps = 65;
 
 ordered_json numbers(const Eigen::Vector3d& v) {
