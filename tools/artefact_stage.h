@@ -19,11 +19,11 @@ struct SheetLine {
   double predicted = 0;
 };
 
-// From the recipe's first viewpoint, with its scanner, effects, lights and medium, and the bodies
-// of its first material in the place of its objects. Points count where the true surface is turned
-// away from the ray by less than 60 degrees and, on plates and steps, lies in the inner 0.9 of the
-// face. Throws scan::Error (computation) for a place without enough points, (input) for a recipe
-// without artefacts.
+// From the recipe's first viewpoint (for the merged figures from up to three of them), with its
+// scanner, effects, lights and medium, and the bodies of its first material in the place of its
+// objects. Points count where the true surface is turned away from the ray by less than 60 degrees
+// and, on plates and steps, lies in the inner 0.9 of the face. Throws scan::Error (computation) for
+// a place without enough points, (input) for a recipe without artefacts.
 std::vector<SheetLine> artefact_sheet(const Recipe& recipe, Console& console);
 
 }  // namespace scan

@@ -47,7 +47,7 @@ void Console::detail(const std::string& text) const {
 }
 
 void Console::warn(const std::string& text) {
-  std::fprintf(stderr, "warning: %s\n", text.c_str());
+  if (!is_inner) std::fprintf(stderr, "warning: %s\n", text.c_str());
   warnings_.push_back(text);
 }
 

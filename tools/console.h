@@ -27,11 +27,12 @@ class Console {
   bool quiet = false;
   bool verbose = false;
   int threads = 0;
+  bool is_inner = false;  // of a run within another command: its warnings are kept, not shown
 
   void log(const std::string& text) const;     // stderr, unless quiet
   void detail(const std::string& text) const;  // stderr, with -v
-  void warn(const std::string& text);          // stderr, and into the JSON's "warnings"
-  void say(const std::string& text) const;     // stdout, unless --json
+  void warn(const std::string& text);       // stderr unless inner, and into the JSON's "warnings"
+  void say(const std::string& text) const;  // stdout, unless --json
 
   // Shows a bar on a terminal, nothing elsewhere; throws Interrupted after Ctrl-C.
   Progress progress() const;

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "libscan/core/median.h"
 #include "libscan/core/error.h"
+#include "libscan/core/median.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/text.h"
 
@@ -86,6 +86,14 @@ void warn_of_other_frame(const std::string& path, const Bounds& measured, const 
   if (gap_m > diagonal_m(truth))
     console.warn(path + ": lies " + readable_length(gap_m) + " from the truth, whose size is " +
                  readable_length(diagonal_m(truth)) + "; another frame? Then align it first");
+}
+
+void warn_of_holes(const std::string& path, const TrueSurface& truth, Console& console) {
+  std::size_t edges = 0;
+  for (const Mesh& mesh : truth.meshes) edges += edge_census(mesh).boundary_edges;
+  if (edges == 0) return;
+  console.warn(path + ": the true surface has holes (" + std::to_string(edges) +
+               " boundary edges); no volume is compared, and distances go to their rims");
 }
 
 bool tell_of_pose(const std::string& scan, const ScanPose& pose, Console& console) {

@@ -10,6 +10,7 @@
 #include "libscan/acquire/normals.h"
 #include "libscan/align/multiview.h"
 #include "libscan/core/scan.h"
+#include "libscan/verify/truth.h"
 #include "tools/console.h"
 
 namespace scan {
@@ -27,6 +28,10 @@ std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths,
 // the factor) or another frame (with the gap). Says nothing where the truth has no end.
 void warn_of_other_frame(const std::string& path, const Bounds& measured, const Bounds& truth,
                          Console& console);
+
+// Warns of a true surface with holes: nothing is inside it, and what lies behind a hole is measured
+// to its rim.
+void warn_of_holes(const std::string& path, const TrueSurface& truth, Console& console);
 
 // Warns of scans so much larger or smaller than the others that their unit may be another one.
 void warn_of_units(const std::vector<std::string>& paths, const std::vector<Scan>& scans,

@@ -104,9 +104,10 @@ std::string unit_suffix(const std::string& name) {
   for (const char* angle : {"normal_error", "rotation_error", "cylinder_axis_error"})
     if (name.find(angle) != std::string::npos) return "_rad";
   for (const char* count :
-       {"components", "boundary_edges", "non_manifold_edges", "genus", "f_score",
-        "ray_hit_fraction", "normalised_range_error_rms", "area_error", "volume_error"})
+       {"components", "boundary_edges", "non_manifold_edges", "genus", "self_intersections",
+        "f_score", "ray_hit_fraction", "unsupported_area", "area_error", "volume_error"})
     if (name == count) return "";
+  if (name.starts_with("normalised_") || name.ends_with("_within_95")) return "";
   return "_m";
 }
 

@@ -17,8 +17,8 @@ namespace scan {
 // {"dielectric": "bk7"}, with "interior" absorbing or translucent; {"plastic": 1.5, "diffuse":
 // 0.5}. Names of conductors and clear media are looked up at `wavelength_m`, the scanner's.
 // {"gltf": {"base_colour": [r, g, b], "metallic": 1, "roughness": 0.5, ...}} is glTF's model.
-// "texture": {"checker": ...}, {"noise": ...} or {"picture": {"file": "grain.png", "width_mm": 40}},
-// which lies upon the object's xy plane; without a width it is laid on a mesh by its texture
+// "texture": {"checker": ...}, {"noise": ...} or {"picture": {"file": "grain.png", "width_mm":
+// 40}}, which lies upon the object's xy plane; without a width it is laid on a mesh by its texture
 // coordinates. Pictures are relative to `folder`; `picture` becomes the texture's.
 synth::Material read_material(JsonReader reader, const std::string& name, double wavelength_m,
                               const std::filesystem::path& folder, std::filesystem::path& picture);

@@ -59,8 +59,10 @@ void fields(Fields& f, ReconstructSettings& s) {
   f.integer("depth", s.ssd.depth);
   f.length("sigma", s.ssd.sigma_m);
   f.length("smoothing_length", s.ssd.smoothing_length_m);
+  f.boolean("sharp", s.sharp);
   f.length("thin", s.thin_m);
   f.length("trim", s.trim_m);
+  f.length("decimate", s.decimate_m);
   f.length("max_sigma", s.max_sigma_m);
 }
 

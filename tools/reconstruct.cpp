@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // scan reconstruct: oriented points to a surface.
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
 #include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
-#include "libscan/io/scan_file.h"
+#include "libscan/io/surface_file.h"
 #include "tools/commands.h"
 #include "tools/inputs.h"
 #include "tools/surface_stage.h"
@@ -20,9 +21,19 @@ struct Arguments {
   std::string method = "ssd";
   std::string poses;
   long depth = SsdOptions{}.depth;
+  bool sharp = false;
   double trim_m = 0;
+  double decimate_m = 0;
   double thin_m = 0;
 };
+
+// An area, and its share of all that there was.
+std::string area_text(double part_m2, const SurfaceResult& result) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.3g m2 (%.2f %%)", part_m2,
+                100 * part_m2 / (area_m2(result.surface) + result.trimmed_area_m2));
+  return text;
+}
 
 int reconstruct_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
@@ -41,12 +52,14 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   settings.method = static_cast<ReconstructMethod>(
       std::find(names.begin(), names.end(), arguments.method) - names.begin());
   settings.ssd.depth = static_cast<int>(arguments.depth);
+  settings.sharp = arguments.sharp;
   settings.trim_m = arguments.trim_m;
+  settings.decimate_m = arguments.decimate_m;
   settings.thin_m = arguments.thin_m;
 
   const SurfaceResult result =
       make_surface(joined(scans, poses), joined_viewpoints(scans, poses), settings, console);
-  write_mesh(output, result.surface);
+  write_supported_mesh(output, supported(result));
   const auto json = surface_json(result);
   if (settings.method == ReconstructMethod::automatic)
     console.say("method " + result.method + ": " + result.method_reason);
@@ -54,6 +67,19 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
               std::to_string(result.surface.triangles.size()) + " triangles, " +
               std::to_string(json.at("components").get<int>()) + " components, " +
               (json.at("watertight").get<bool>() ? "watertight" : "not closed"));
+  const double unsupported_m2 = unsupported_area_m2(result);
+  if (unsupported_m2 > 0)
+    console.say("no data within three spacings of " + area_text(unsupported_m2, result) +
+                " of the surface: a guess (support_m in a PLY tells where)");
+  if (result.sharp.edge_vertices > 0)
+    console.say(std::to_string(result.sharp.edge_vertices) + " vertices put on sharp edges, " +
+                std::to_string(result.sharp.corners) + " of them corners");
+  if (result.decimation.is_proven)
+    console.say("decimated from " + std::to_string(result.decimation.triangles_before) +
+                " triangles, both surfaces within " + readable_length(result.decimation.bound_m) +
+                " of one another");
+  if (result.trimmed_area_m2 > 0)
+    console.say("trimmed " + area_text(result.trimmed_area_m2, result));
   if (result.depth > 0)
     console.say("depth " + std::to_string(result.depth) + ", points scatter by " +
                 readable_length(result.sigma_m) + ", smoothing length " +
@@ -71,7 +97,10 @@ Action reconstruct_command(CommandLine& line) {
   line.whole("--depth", arguments->depth, 3, 12,
              "ssd: most; cells are not narrower than box / 2^depth");
   line.option("--poses", arguments->poses, "a pose for each input, in their order");
+  line.flag("--sharp", arguments->sharp, "put edges and corners back; for points of little noise");
   line.length("--trim", arguments->trim_m, "remove surface farther than this from every point");
+  line.length("--decimate", arguments->decimate_m,
+              "merge triangles as long as the surface stays within this distance, which is proven");
   line.length("--thin", arguments->thin_m, "first thin the points to one per cube of this side");
   return [arguments](Console& console) { return reconstruct_files(*arguments, console); };
 }

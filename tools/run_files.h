@@ -4,10 +4,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "libscan/core/scan.h"
+#include "libscan/verify/stated_uncertainty.h"
 
 namespace scan {
 
@@ -24,5 +26,9 @@ std::vector<Scan> read_run_scans(const std::filesystem::path& run);
 
 // The poses in poses.tum, one per scan.
 std::vector<Pose> read_run_poses(const std::filesystem::path& run);
+
+// The covariances in alignment.json, none for scans without; empty if the file is not there: the
+// poses were not estimated. scan::Error (input) if it is broken.
+std::vector<std::optional<StatedPose>> read_run_stated_poses(const std::filesystem::path& run);
 
 }  // namespace scan

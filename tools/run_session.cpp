@@ -8,8 +8,10 @@
 #include <sstream>
 
 #include "libscan/core/error.h"
+#include "libscan/core/parallel.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
+#include "tools/report_stage.h"
 #include "tools/run_files.h"
 #include "tools/run_stages.h"
 #include "tools/version.h"
@@ -24,7 +26,7 @@ using nlohmann::ordered_json;
 // differ between equal runs.
 const std::map<std::string, std::vector<std::string>> stage_outputs = {
     {"simulate", {"effects.json", "simulation.json", "scans", "truth", "raw"}},
-    {"align", {"alignment.json", "poses.tum"}},
+    {"align", {"alignment.json", "pose_trace.json", "poses.tum"}},
     {"reconstruct", {"surface.ply", "reconstruction.json"}},
     {"verify", {"verdict.json"}}};
 
@@ -114,6 +116,8 @@ void RunSession::stage(const std::string& name, const Work& work) {
   if (!console_.seconds().contains(name)) console_.time(name, seconds);
   ordered_json timings = read_or_empty(run_ / "timings.json");
   for (const auto& [step, value] : console_.seconds()) timings[step] = value;
+  timings["machine"] = machine_text();
+  timings["threads"] = thread_count();
   write_json(run_ / "timings.json", timings);
   record_stage(folder_, name, inputs_, output_files(run_, name));
 }
@@ -121,7 +125,7 @@ void RunSession::stage(const std::string& name, const Work& work) {
 void RunSession::report() {
   const fs::path page = run_ / "report.html";
   if (!a_stage_ran_ && fs::exists(page)) return;
-  write_file(page, report_run(run_));
+  write_report(run_, page);
 }
 
 int RunSession::finish(const std::string& command) {

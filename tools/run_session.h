@@ -37,8 +37,8 @@ class RunSession {
   using Work = std::function<void(const std::filesystem::path& run, const Recipe& recipe)>;
   void stage(const std::string& name, const Work& work);
 
-  // Writes report.html unless it is there and no stage ran. It is no recorded stage: it shows
-  // seconds, and stages.json is the same for equal runs.
+  // Writes report.html and its twins unless it is there and no stage ran. It is no recorded stage:
+  // it shows seconds, and stages.json is the same for equal runs.
   void report();
 
   const Recipe& recipe() const { return recipe_; }

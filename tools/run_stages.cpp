@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/run_stages.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
@@ -10,9 +11,8 @@
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/truth_file.h"
-#include "libscan/verify/surface_error.h"
 #include "tools/inputs.h"
-#include "tools/report/page.h"
+#include "tools/pose_trace.h"
 #include "tools/run_files.h"
 #include "tools/surface_stage.h"
 #include "tools/verify_stage.h"
@@ -22,14 +22,28 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A JSON file of the run, or null if it is not there.
-ordered_json json_if_there(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) return nullptr;
-  return ordered_json::parse(read_file(path));
+// Enough to see how the poses come to rest; of many scans fewer steps are kept.
+constexpr std::size_t least_steps = 8, most_traced_poses = 2000;
+
+void check_is_run(const std::filesystem::path& run) {
+  if (!std::filesystem::exists(recipe_path(run)))
+    throw Error(Trouble::input, run.string() + ": holds no recipe.json; is it a run folder?");
+}
+
+void check_stage_ran(const std::filesystem::path& run, const char* file, const char* stage) {
+  if (!std::filesystem::exists(run / file))
+    throw Error(Trouble::input,
+                run.string() + ": holds no " + file + "; the run ended before " + stage,
+                "scan run --resume goes on with it");
 }
 
 RunResult read_result(const std::filesystem::path& run) {
-  RunResult result{read_run_scans(run), read_run_poses(run), read_mesh(run / "surface.ply")};
+  check_stage_ran(run, "poses.tum", "align was done");
+  check_stage_ran(run, "surface.ply", "reconstruct was done");
+  RunResult result{.scans = read_run_scans(run),
+                   .world_from_scan = read_run_poses(run),
+                   .surface = read_supported_mesh(run / "surface.ply"),
+                   .stated_poses = read_run_stated_poses(run)};
   if (result.world_from_scan.size() != result.scans.size())
     throw Error(Trouble::input, (run / "poses.tum").string() + ": has " +
                                     std::to_string(result.world_from_scan.size()) + " poses for " +
@@ -53,13 +67,22 @@ void align_run(const std::filesystem::path& run, const Recipe& recipe, Console& 
     clouds.push_back(scan.cloud);
     guesses.push_back(scan.world_from_scanner_guess);
   }
-  const MultiviewResult result = align_scans(clouds, guesses, recipe.align, console.progress());
+  MultiviewOptions options = recipe.align;
+  std::vector<std::vector<Pose>> joint;
+  options.on_round = [&](std::span<const Pose> found) {
+    joint.emplace_back(found.begin(), found.end());
+  };
+  const MultiviewResult result = align_scans(clouds, guesses, options, console.progress());
   console.time("align", result.cost.seconds);
   std::vector<NamedPose> poses;
   for (std::size_t i = 0; i < scans.size(); ++i)
     poses.push_back({scan_name(i), result.scans[i].world_from_scan});
   write_json(run / "alignment.json",
              alignment_json(scan_files(scans.size()), result, recipe.align.icp));
+  const auto steps =
+      pose_steps(guesses, result.edges, joint, static_cast<std::size_t>(options.anchor),
+                 std::max(least_steps, most_traced_poses / scans.size()));
+  write_json(run / "pose_trace.json", trace_json(steps));
   write_poses_tum(run / "poses.tum", poses);
   for (std::size_t i = 0; i < scans.size(); ++i)
     if (!tell_of_pose("scan " + scan_name(i), result.scans[i], console))
@@ -72,38 +95,20 @@ void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Con
   const std::vector<Pose> poses = read_run_poses(run);
   const SurfaceResult result = make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
                                             recipe.reconstruct, console);
-  write_mesh(run / "surface.ply", result.surface);
+  write_supported_mesh(run / "surface.ply", supported(result));
   write_json(run / "reconstruction.json", surface_json(result));
 }
 
 Verdict verify_run(const std::filesystem::path& run, Console&) {
+  check_is_run(run);
+  check_stage_ran(run, "truth", "simulate was done");
   const Recipe recipe = read_recipe(recipe_path(run));
   const Truth truth = read_truth(truth_path(run));
-  const RunResult result = read_result(run);
+  RunResult result = read_result(run);
+  result.anchor = static_cast<std::size_t>(recipe.align.anchor);
   Verdict verdict = judge(measure_run(result, truth, recipe.verify), recipe.limits);
   write_json(run / "verdict.json", verdict_json(verdict));
   return verdict;
-}
-
-std::string report_run(const std::filesystem::path& run) {
-  Report report;
-  report.recipe = json_if_there(recipe_path(run));
-  if (report.recipe.is_null())
-    throw Error(Trouble::input, run.string() + ": holds no recipe.json; is it a run folder?");
-  report.title = report.recipe.value("name", run.filename().string());
-  report.effects = json_if_there(run / "effects.json");
-  report.alignment = json_if_there(run / "alignment.json");
-  report.reconstruction = json_if_there(run / "reconstruction.json");
-  report.verdict = json_if_there(run / "verdict.json");
-  report.seconds = json_if_there(run / "timings.json");
-  const RunResult result = read_result(run);
-  report.simulation = ordered_json::array();
-  for (std::size_t i = 0; i < result.scans.size(); ++i)
-    report.simulation.push_back(scan_json("scans/" + scan_name(i) + ".ply", result.scans[i]));
-  const Truth truth = read_truth(truth_path(run));
-  report.surface = in_true_world(result, truth);
-  report.deviations_m = deviations_m(report.surface.vertices, truth.surface);
-  return report_page(report);
 }
 
 void say_verdict(const ordered_json& verdict, const Console& console) {
@@ -121,6 +126,9 @@ void say_verdict(const ordered_json& verdict, const Console& console) {
       text += std::string("   ") + (m.at("pass").get<bool>() ? "pass" : "FAIL") + " (" +
               m.at("relation").get<std::string>() + " " + readable(m.at("limit"), unit) + ")";
     console.say(text);
+    console.say("      " + m.at("definition").get<std::string>() + " [" +
+                m.at("over").get<std::string>() +
+                "; n = " + std::to_string(m.at("count").get<std::size_t>()) + "]");
   }
   console.say(verdict.at("pass").get<bool>() ? "PASS" : "FAIL");
 }

@@ -21,7 +21,8 @@ struct SimulateOptions {
 void simulate_run(const std::filesystem::path& run, const Recipe& recipe,
                   const SimulateOptions& options, Console& console);
 
-// scans/ -> alignment.json, poses.tum. scan::Error (computation) if a scan could not be aligned.
+// scans/ -> alignment.json, pose_trace.json, poses.tum. scan::Error (computation) if a scan could
+// not be aligned.
 void align_run(const std::filesystem::path& run, const Recipe& recipe, Console& console);
 
 // scans/, poses.tum -> surface.ply, reconstruction.json.
@@ -30,11 +31,8 @@ void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Con
 // Everything and truth/ -> verdict.json.
 Verdict verify_run(const std::filesystem::path& run, Console& console);
 
-// The report's page from what the folder holds.
-std::string report_run(const std::filesystem::path& run);
-
-// One line per measurement of a verdict.json, with its prediction where there is one, then PASS or
-// FAIL.
+// Each measurement of a verdict.json, with its prediction where there is one, and its definition in
+// the line below; then PASS or FAIL.
 void say_verdict(const nlohmann::ordered_json& verdict, const Console& console);
 
 }  // namespace scan

@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build ccache mold pkg-config
   libeigen3-dev libtbb-dev libembree-dev libflann-dev liblz4-dev libpcl-dev libopencv-dev
   libcgal-dev libceres-dev libassimp-dev libpng-dev libturbojpeg0-dev zlib1g-dev
-  nlohmann-json3-dev libcli11-dev libgtest-dev
+  nlohmann-json3-dev libcli11-dev libgtest-dev libjs-three
 )
 # Further packages by name: setup.sh libbenchmark-dev ...
 packages+=("$@")

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study_runs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "libscan/core/cost.h"
 #include "libscan/core/error.h"
+#include "libscan/core/parallel.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
@@ -30,7 +32,7 @@ const std::vector<StageOf> study_stages = {
     {"simulate",
      {"seed", "scene", "scanner", "viewpoints", "effects", "acquire"},
      {"effects.json", "simulation.json", "timings.json", "scans", "truth"}},
-    {"align", {"align"}, {"alignment.json", "poses.tum"}},
+    {"align", {"align"}, {"alignment.json", "pose_trace.json", "poses.tum"}},
     {"reconstruct", {"reconstruct"}, {"surface.ply", "reconstruction.json"}}};
 
 // Files are never changed in place, so runs may share them.
@@ -57,49 +59,75 @@ const Measurement& figure_of(const Verdict& verdict, const std::string& name) {
 }
 
 ordered_json outcome_json(const RunOutcome& outcome, const std::string& as_run) {
+  ordered_json stages = ordered_json::object();
+  for (const auto& [stage, cost] : outcome.stages)
+    stages[stage] = {{"seconds", cost.seconds}, {"peak_mib", cost.peak_mib}};
   return {
       {"run", fingerprint(as_run)},
       {"error", std::isfinite(outcome.error) ? ordered_json(outcome.error) : ordered_json(nullptr)},
       {"unit", outcome.unit},
-      {"seconds", outcome.seconds},
+      {"stages", stages},
       {"trouble", outcome.trouble}};
 }
 
 RunOutcome outcome_of(const ordered_json& json) {
   const bool known = json.at("error").is_number();
-  return {
+  RunOutcome outcome{
       .error = known ? json.at("error").get<double>() : std::numeric_limits<double>::quiet_NaN(),
       .unit = json.at("unit").get<std::string>(),
-      .seconds = json.at("seconds").get<std::map<std::string, double>>(),
+      .stages = {},
       .trouble = json.at("trouble").get<std::string>()};
+  for (const auto& [stage, cost] : json.at("stages").items())
+    outcome.stages[stage] = {cost.at("seconds").get<double>(), cost.at("peak_mib").get<double>()};
+  return outcome;
+}
+
+bool is_noise(synth::Effect effect) {
+  using enum synth::Effect;
+  return effect == shot_noise || effect == read_noise || effect == quantisation ||
+         effect == speckle;
+}
+
+bool is_miscalibration(synth::Effect effect) {
+  using enum synth::Effect;
+  return effect == miscalibration || effect == plane_bow || effect == wiggling ||
+         effect == range_walk;
+}
+
+// The effects that the recipe calls for, but those that are spared.
+synth::EffectChoice left_over(const Recipe& recipe, const Spared& spared) {
+  synth::EffectChoice left{synth::EffectChoice::Kind::named, {}};
+  for (const synth::EffectDecision& decision :
+       synth::plan_effects(recipe.scanner, recipe.scene.scene, synth::true_poses(recipe.viewpoints),
+                           recipe.effects)) {
+    const bool is_spared = is_noise(decision.effect)            ? spared.noise
+                           : is_miscalibration(decision.effect) ? spared.calibration
+                                                                : spared.effects;
+    if (decision.on && !is_spared) left.names.emplace_back(synth::name(decision.effect));
+  }
+  if (left.names.empty()) left.kind = synth::EffectChoice::Kind::none;
+  return left;
 }
 
 }  // namespace
 
-double RunOutcome::total_s() const {
-  double sum = 0;
-  for (const auto& [stage, s] : seconds) sum += s;
-  return sum;
-}
-
 StudyRuns::StudyRuns(std::string place, fs::path folder, fs::path out)
-    : place_(std::move(place)), folder_(std::move(folder)), runs_(std::move(out) / "runs") {
-  make_folder(runs_);
-}
+    : place_(std::move(place)), folder_(std::move(folder)), runs_(std::move(out) / "runs") {}
 
-void StudyRuns::stages(const fs::path& run, const Recipe& recipe, const Spared& spared,
-                       Console& console, std::map<std::string, double>& seconds) {
+void StudyRuns::do_stages(const fs::path& run, const Recipe& recipe, const Spared& spared,
+                          Console& console, StageCosts& costs) {
   const ordered_json json = to_json(recipe);
-  std::string decided;
+  std::string decided = std::to_string(thread_count()) + " threads";
   for (const StageOf& stage : study_stages) {
     for (const char* part : stage.decided_by) decided += json.at(part).dump();
     if (stage.name == std::string("align") && spared.poses) decided += "true poses";
     const std::string key = stage.name + fingerprint(decided);
     if (const auto found = done_.find(key); found != done_.end()) {
       link_outputs(found->second.run, run, stage.outputs);
-      seconds.insert(found->second.seconds.begin(), found->second.seconds.end());
+      costs.insert(found->second.costs.begin(), found->second.costs.end());
       continue;
     }
+    restart_peak_memory();
     const Stopwatch watch;
     if (stage.name == std::string("simulate"))
       simulate_run(run, recipe, {}, console);
@@ -107,24 +135,31 @@ void StudyRuns::stages(const fs::path& run, const Recipe& recipe, const Spared& 
       spared.poses ? write_true_poses(run) : align_run(run, recipe, console);
     else
       reconstruct_run(run, recipe, console);
-    std::map<std::string, double> took = {{stage.name, watch.seconds()}};
+    StageCosts took = {{stage.name, {watch.seconds(), peak_memory_mib()}}};
     if (stage.name == std::string("simulate")) {
-      took["acquire"] = console.seconds().at("acquire");
-      took["simulate"] -= took["acquire"];
+      took["acquire"] = {console.seconds().at("acquire"), peak_memory_mib()};
+      took["simulate"].seconds -= took["acquire"].seconds;
     }
-    seconds.insert(took.begin(), took.end());
+    costs.insert(took.begin(), took.end());
     done_[key] = {run, took};
   }
 }
 
-RunOutcome StudyRuns::run(const std::string& name, const nlohmann::json& json, std::uint64_t seed,
-                          const std::string& figure, const Spared& spared) {
-  Recipe recipe = read_recipe(json, place_, folder_);
+Recipe StudyRuns::read(const StudyRecipe& recipe) const {
+  return read_recipe(recipe.recipe, place_, folder_);
+}
+
+RunOutcome StudyRuns::run(const std::string& name, const StudyRecipe& study_recipe,
+                          std::uint64_t seed, const std::string& figure, const Spared& spared) {
+  Recipe recipe = read(study_recipe);
   recipe.seed = seed;
   recipe.limits.clear();
-  if (spared.effects) recipe.effects = {synth::EffectChoice::Kind::none, {}};
+  if (spared.calibration || spared.effects || spared.noise)
+    recipe.effects = left_over(recipe, spared);
+  const ThreadLimit limit(study_recipe.threads > 0 ? study_recipe.threads : thread_count());
   const std::string as_run = json_text(to_json(recipe));
-  const std::string key = as_run + figure + (spared.poses ? " with true poses" : "");
+  const std::string key =
+      as_run + figure + std::to_string(thread_count()) + (spared.poses ? " with true poses" : "");
   const fs::path run = runs_ / name, result = run / "outcome.json";
   if (fs::exists(result)) {
     const ordered_json stored = ordered_json::parse(read_file(result), nullptr, false);
@@ -135,11 +170,12 @@ RunOutcome StudyRuns::run(const std::string& name, const nlohmann::json& json, s
   make_folder(run);
   write_file(recipe_path(run), as_run);
   RunOutcome outcome{
-      .error = std::numeric_limits<double>::quiet_NaN(), .unit = {}, .seconds = {}, .trouble = {}};
+      .error = std::numeric_limits<double>::quiet_NaN(), .unit = {}, .stages = {}, .trouble = {}};
   Console console;
   console.quiet = true;
+  console.is_inner = true;
   try {
-    stages(run, recipe, spared, console, outcome.seconds);
+    do_stages(run, recipe, spared, console, outcome.stages);
     const Verdict verdict = verify_run(run, console);
     outcome.error = figure_of(verdict, figure).value;
     outcome.unit = figure_of(verdict, figure).unit;

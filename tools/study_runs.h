@@ -10,24 +10,26 @@
 
 #include "tools/console.h"
 #include "tools/recipe.h"
+#include "tools/study.h"
 
 namespace scan {
 
-// What one run gave. `seconds` by stage: simulate, acquire, align, reconstruct; a stage that was
-// shared counts what it took when it was done.
+// What one run gave. Costs by stage: simulate, acquire, align, reconstruct; a stage that was shared
+// counts what it took when it was done. Memory of simulate and acquire is told as simulate's.
 struct RunOutcome {
   double error = 0;  // the figure, in its unit; NaN if the run failed
   std::string unit;  // "m", "rad", ...
-  std::map<std::string, double> seconds;
+  StageCosts stages;
   std::string trouble;  // why it failed, empty if it did not
-
-  double total_s() const;
 };
 
-// Which errors a run is spared, to tell what the others come from.
+// Which errors a run is spared, to tell what the others come from. The random streams of the other
+// sources stay as they are.
 struct Spared {
-  bool poses = false;    // the true poses stand in for the aligned ones
-  bool effects = false;  // the scanner is simulated without any effect
+  bool poses = false;        // the true poses stand in for the aligned ones
+  bool calibration = false;  // the device is as its calibration says
+  bool effects = false;      // of light and device but noise and miscalibration
+  bool noise = false;        // of the detector, and speckle
 };
 
 class StudyRuns {
@@ -38,18 +40,21 @@ class StudyRuns {
   // Runs `recipe`, as it stands in its file but for what is varied, under this seed; or reads its
   // outcome if the folder `name` holds the same run already. scan::Error (input) for a recipe that
   // cannot be read or a figure that no run measures; what fails later is the outcome's trouble.
-  RunOutcome run(const std::string& name, const nlohmann::json& recipe, std::uint64_t seed,
+  RunOutcome run(const std::string& name, const StudyRecipe& recipe, std::uint64_t seed,
                  const std::string& figure, const Spared& spared = {});
 
+  // The recipe as a run of it begins. scan::Error (input) as above.
+  Recipe read(const StudyRecipe& recipe) const;
+
  private:
-  void stages(const std::filesystem::path& run, const Recipe& recipe, const Spared& spared,
-              Console& console, std::map<std::string, double>& seconds);
+  void do_stages(const std::filesystem::path& run, const Recipe& recipe, const Spared& spared,
+                 Console& console, StageCosts& costs);
 
   std::string place_;
   std::filesystem::path folder_, runs_;
   struct Done {
     std::filesystem::path run;
-    std::map<std::string, double> seconds;
+    StageCosts costs;
   };
   std::map<std::string, Done> done_;  // by the fingerprint of all that decides a stage
 };

@@ -17,7 +17,7 @@ bool is_known(const StudyPoint& point) {
 std::vector<Eigen::Index> columns(const Study& study) {
   std::vector<Eigen::Index> first{1};
   for (const Variation& variation : study.vary)
-    first.push_back(first.back() + static_cast<Eigen::Index>(variation.values.size()));
+    first.push_back(first.back() + static_cast<Eigen::Index>(variation.choices.size()));
   return first;
 }
 
@@ -66,10 +66,10 @@ std::vector<StudyPoint> estimated(const Study& study, const std::vector<StudyPoi
 // The middle of all lists, and what differs from it in one field.
 std::vector<Setting> star(const Study& study) {
   Setting middle;
-  for (const Variation& variation : study.vary) middle.push_back(variation.values.size() / 2);
+  for (const Variation& variation : study.vary) middle.push_back(variation.choices.size() / 2);
   std::vector<Setting> settings{middle};
   for (std::size_t k = 0; k < study.vary.size(); ++k)
-    for (std::size_t i = 0; i < study.vary[k].values.size(); ++i) {
+    for (std::size_t i = 0; i < study.vary[k].choices.size(); ++i) {
       Setting setting = middle;
       setting[k] = i;
       if (setting != middle) settings.push_back(setting);

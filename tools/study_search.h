@@ -4,7 +4,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,10 +19,10 @@ struct StudyPoint {
   double error = 0;  // mean over the seeds; NaN if any run failed
   double least_error = 0, most_error = 0;
   std::string unit;
-  double seconds = 0;                           // mean
-  std::map<std::string, double> stage_seconds;  // means
-  std::string trouble;                          // of the first run that failed
-  bool on_front = false;                        // no other is both as good and as fast
+  double seconds = 0;     // mean of those that count
+  StageCosts stages;      // mean seconds, largest memory
+  std::string trouble;    // of the first run that failed
+  bool on_front = false;  // no other is both as good and as fast
 };
 
 // Marks the points of the Pareto front.

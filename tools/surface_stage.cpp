@@ -3,6 +3,7 @@
 #include "tools/surface_stage.h"
 
 #include "libscan/core/error.h"
+#include "libscan/reconstruct/decimate.h"
 #include "libscan/reconstruct/trim.h"
 #include "libscan/search/voxel_grid.h"
 
@@ -48,7 +49,8 @@ SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpo
     viewpoints.clear();  // a cube's mean was seen from several places
   }
   SurfaceResult result = reconstruct(
-      cloud, viewpoints, {.method = settings.method, .ssd = settings.ssd}, console.progress());
+      cloud, viewpoints, {.method = settings.method, .ssd = settings.ssd, .sharp = settings.sharp},
+      console.progress());
   console.time("reconstruct", result.cost.seconds);
   tell_of_points(result, console);
   if (settings.trim_m > 0) trim(result, settings.trim_m);
@@ -56,7 +58,14 @@ SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpo
     throw Error(Trouble::computation, "nothing of the surface is within " +
                                           readable_length(settings.trim_m) +
                                           " of a point (--trim)");
+  if (settings.decimate_m > 0 && !decimate(result, settings.decimate_m).is_proven)
+    console.warn("decimation within " + readable_length(settings.decimate_m) +
+                 " could not be proven: the surface keeps all its triangles");
   return result;
+}
+
+SupportedMesh supported(const SurfaceResult& result) {
+  return {result.surface, result.support_m, result.data_spacing_m, result.standard_error_m};
 }
 
 }  // namespace scan

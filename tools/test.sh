@@ -7,10 +7,13 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 preset=${PRESET:-release}
-case $preset in
-  asan-ubsan) tools/setup.sh clang libclang-rt-14-dev ;;
-  *) tools/setup.sh ;;
-esac
+more=()
+[ "$preset" = asan-ubsan ] && more+=(clang libclang-rt-14-dev)
+# The report's page is opened in a browser; whichever is there already will do.
+command -v chromium >/dev/null || more+=(chromium)
+command -v node >/dev/null || more+=(nodejs)
+command -v npm >/dev/null || more+=(npm)
+tools/setup.sh "${more[@]}"
 cmake --preset "$preset" >"/tmp/libscan-configure.$$" 2>&1 || {
   cat "/tmp/libscan-configure.$$" >&2
   exit 1

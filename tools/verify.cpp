@@ -13,13 +13,13 @@
 #include "libscan/io/truth_file.h"
 #include "libscan/verify/disparity_error.h"
 #include "libscan/verify/pose_error.h"
-#include "libscan/verify/size_error.h"
 #include "libscan/verify/surface_error.h"
 #include "tools/artefact_stage.h"
 #include "tools/commands.h"
 #include "tools/inputs.h"
 #include "tools/report/picture.h"
 #include "tools/run_stages.h"
+#include "tools/verify_stage.h"
 
 namespace scan {
 namespace {
@@ -35,10 +35,6 @@ struct Arguments {
   std::string picture;
   bool artefacts = false;
 };
-
-void add(std::vector<Measurement>& to, std::vector<Measurement> more) {
-  for (Measurement& measurement : more) to.push_back(std::move(measurement));
-}
 
 bool is_disparity(const std::string& path) {
   return std::filesystem::path(path).extension() == ".pfm";
@@ -78,22 +74,23 @@ std::vector<Measurement> measure_poses(const Arguments& arguments,
                                        std::span<const Eigen::Vector3d> points_in_world,
                                        Console& console) {
   const auto [estimated, truth] = matched_poses(arguments, console);
-  const Bounds box = bounds_of(points_in_world);
+  const auto targets = corners_of(bounds_of(points_in_world));
   std::vector<std::vector<Eigen::Vector3d>> felt;
   for (const Pose& world_from_scanner : truth) {
     auto& points = felt.emplace_back();
-    for (int corner = 0; corner < 8; ++corner)
-      points.push_back(world_from_scanner.inverse() *
-                       box.corner(static_cast<Bounds::CornerType>(corner)));
+    for (const Eigen::Vector3d& target : targets)
+      points.push_back(world_from_scanner.inverse() * target);
   }
   auto figures = summarise(pose_errors(estimated, truth, felt));
   add(figures, summarise_relative(relative_pose_errors(estimated, truth, felt)));
+  add(figures, target_registration_error(estimated, truth, felt, targets));
   return figures;
 }
 
 void write_picture(const std::string& path, const Mesh& mesh, const TrueSurface& truth) {
   const auto deviations = deviations_m(mesh.vertices, truth);
-  write_png(path, contact_sheet(six_views(mesh, deviations, deviation_limit_m(deviations), 400)));
+  write_png(path, contact_sheet(
+                      Portrait(mesh, deviations, deviation_limit_m(deviations)).six_views(400)));
 }
 
 std::vector<Measurement> measure_disparity(const Arguments& arguments) {
@@ -107,16 +104,16 @@ std::vector<Measurement> measure_disparity(const Arguments& arguments) {
 std::vector<Measurement> measure_files(const Arguments& arguments, Console& console) {
   if (is_disparity(arguments.measured)) return measure_disparity(arguments);
   const TrueSurface truth = read_true_surface(arguments.truth);
+  warn_of_holes(arguments.truth, truth, console);
   const SurfaceErrorOptions options{.f_score_threshold_m = arguments.threshold_m};
   std::vector<Measurement> measurements;
   std::vector<Eigen::Vector3d> points;
   if (holds_triangles(arguments.measured)) {
-    const Mesh mesh = read_mesh(arguments.measured);
-    measurements = surface_error(mesh, truth, options);
-    add(measurements, size_error(mesh, truth));
-    add(measurements, topology(mesh));
-    if (!arguments.picture.empty()) write_picture(arguments.picture, mesh, truth);
-    points = mesh.vertices;
+    const SupportedMesh surface = read_supported_mesh(arguments.measured);
+    measurements = surface_error(surface.mesh, truth, options);
+    add(measurements, measure_shape(surface, truth));
+    if (!arguments.picture.empty()) write_picture(arguments.picture, surface.mesh, truth);
+    points = surface.mesh.vertices;
   } else {
     const Scan scan = read_scan(arguments.measured);
     measurements = cloud_error(scan.cloud, truth, options);

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/verify_stage.h"
 
+#include "libscan/core/error.h"
+#include "libscan/reconstruct/surface_result.h"
 #include "libscan/verify/pose_error.h"
+#include "libscan/verify/self_intersection.h"
 #include "libscan/verify/size_error.h"
 #include "libscan/verify/surface_error.h"
 
@@ -46,37 +49,98 @@ std::vector<Measurement> measure_ranges(const std::vector<Scan>& scans, const Tr
   return range_error(cloud, rays, all);
 }
 
-void add(std::vector<Measurement>& to, std::vector<Measurement> more) {
-  for (Measurement& measurement : more) to.push_back(std::move(measurement));
+std::vector<Measurement> measure_poses(const RunResult& result, const Truth& truth) {
+  const std::vector<Pose> should = true_poses(truth);
+  const std::span<const Pose> is = result.world_from_scan;
+  const auto felt = picked_points(result.scans);
+  const Bounds box = bounds_of(truth.surface);
+  auto figures = summarise(pose_errors(is, should, felt));
+  add(figures, summarise_relative(relative_pose_errors(is, should, felt)));
+  add(figures,
+      target_registration_error(
+          is, should, felt,
+          corners_of(box.sizes().allFinite() ? box
+                                             : bounds_of(in_true_world(result, truth).vertices))));
+  if (!result.stated_poses.empty())
+    add(figures, stated_uncertainty(
+                     "pose", normalised_pose_errors(is, should, result.stated_poses, result.anchor),
+                     "scans with a covariance, relative to the anchor"));
+  return figures;
+}
+
+// Every ray's true end, world frame.
+std::vector<Eigen::Vector3d> true_hits(const Truth& truth) {
+  std::vector<Eigen::Vector3d> hits;
+  for (const ScanTruth& scan : truth.scans)
+    for (const RayTruth& ray : scan.rays)
+      if (ray.object >= 0) hits.push_back(scan.world_from_scanner * ray.point_in_scanner);
+  return hits;
+}
+
+void check_scans(const RunResult& result, const Truth& truth) {
+  const std::size_t scans = result.scans.size();
+  if (truth.scans.size() != scans || result.world_from_scan.size() != scans)
+    throw Error(Trouble::input, "run: has " + std::to_string(scans) + " scans, " +
+                                    std::to_string(result.world_from_scan.size()) +
+                                    " poses and the truth of " +
+                                    std::to_string(truth.scans.size()) +
+                                    "; they must be equally many (was it cut short?)");
 }
 
 }  // namespace
 
+void add(std::vector<Measurement>& to, std::vector<Measurement> more) {
+  for (Measurement& measurement : more) to.push_back(std::move(measurement));
+}
+
+std::vector<Eigen::Vector3d> corners_of(const Bounds& box) {
+  std::vector<Eigen::Vector3d> corners;
+  for (int corner = 0; corner < 8; ++corner)
+    corners.push_back(box.corner(static_cast<Bounds::CornerType>(corner)));
+  return corners;
+}
+
+std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueSurface& truth) {
+  std::vector<Measurement> figures = size_error(surface.mesh, truth);
+  add(figures, topology(surface.mesh));
+  if (auto crossings = self_intersection(surface.mesh)) figures.push_back(std::move(*crossings));
+  if (surface.support_m.empty() || surface.data_spacing_m.empty()) return figures;
+  std::vector<double> spacings;
+  for (std::size_t i = 0; i < surface.support_m.size(); ++i)
+    spacings.push_back(surface.support_m[i] / surface.data_spacing_m[i]);
+  figures.push_back(unsupported_area(surface.mesh, spacings, supported_within_spacings));
+  if (surface.standard_error_m.empty()) return figures;
+  add(figures, stated_uncertainty("surface",
+                                  normalised_deviations(deviations_m(surface.mesh.vertices, truth),
+                                                        surface.standard_error_m, spacings,
+                                                        supported_within_spacings),
+                                  "supported vertices; errors of the poses count"));
+  return figures;
+}
+
+Pose true_world_from_world(const RunResult& result, const Truth& truth) {
+  return gauge(result.world_from_scan, true_poses(truth), picked_points(result.scans));
+}
+
 Mesh in_true_world(const RunResult& result, const Truth& truth) {
-  return transformed(gauge(result.world_from_scan, true_poses(truth), picked_points(result.scans)),
-                     result.surface);
+  return transformed(true_world_from_world(result, truth), result.surface.mesh);
 }
 
 std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth,
                                      const VerifySettings& settings) {
-  const Mesh surface = in_true_world(result, truth);
-  std::vector<Eigen::Vector3d> seen;
-  for (const ScanTruth& scan : truth.scans)
-    for (const RayTruth& ray : scan.rays)
-      if (ray.object >= 0) seen.push_back(scan.world_from_scanner * ray.point_in_scanner);
+  check_scans(result, truth);
+  SupportedMesh surface = result.surface;
+  surface.mesh = in_true_world(result, truth);
+  const std::vector<Eigen::Vector3d> seen = true_hits(truth);
   SurfaceErrorOptions options{.samples = static_cast<std::size_t>(settings.samples),
                               .f_score_threshold_m = settings.f_score_threshold_m};
   if (settings.seen_distance_m > 0) {
     options.seen_points = seen;
     options.seen_distance_m = settings.seen_distance_m;
   }
-  std::vector<Measurement> measurements = surface_error(surface, truth.surface, options);
-  add(measurements, size_error(surface, truth.surface));
-  add(measurements, topology(surface));
-  const auto felt = picked_points(result.scans);
-  add(measurements, summarise(pose_errors(result.world_from_scan, true_poses(truth), felt)));
-  add(measurements,
-      summarise_relative(relative_pose_errors(result.world_from_scan, true_poses(truth), felt)));
+  std::vector<Measurement> measurements = surface_error(surface.mesh, truth.surface, options);
+  add(measurements, measure_shape(surface, truth.surface));
+  add(measurements, measure_poses(result, truth));
   add(measurements, measure_ranges(result.scans, truth));
   return measurements;
 }

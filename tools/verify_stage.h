@@ -3,7 +3,11 @@
 // Measurements against the truth, as `scan verify` and `scan run` take them.
 #pragma once
 
+#include <optional>
+
 #include "libscan/core/scan.h"
+#include "libscan/io/surface_file.h"
+#include "libscan/verify/stated_uncertainty.h"
 #include "libscan/verify/truth.h"
 #include "libscan/verify/verdict.h"
 #include "tools/recipe.h"
@@ -14,15 +18,31 @@ namespace scan {
 struct RunResult {
   std::vector<Scan> scans;            // scanner frames
   std::vector<Pose> world_from_scan;  // as aligned
-  Mesh surface;
+  SupportedMesh surface;
+  std::vector<std::optional<StatedPose>> stated_poses = {};  // one per scan
+  std::size_t anchor = 0;                                    // the scan that they are relative to
 };
 
-// Surface, topology, poses and ranges of a run. Surface figures are taken after the one rigid
-// motion of the world frame that fits the poses best: an alignment cannot know where the world is.
+void add(std::vector<Measurement>& to, std::vector<Measurement> more);
+
+// Sizes, topology, self-intersections and, where the vertices know them, unsupported area and the
+// honesty of the standard errors.
+std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueSurface& truth);
+
+// The corners of a box: where target registration errors are felt.
+std::vector<Eigen::Vector3d> corners_of(const Bounds& box);
+
+// Surface, shape, poses and ranges of a run. Surface figures are taken after the one rigid motion
+// of the world frame that fits the poses best: an alignment cannot know where the world is. Targets
+// are the corners of the true surface's box, or of the measured one's where that has no end. Throws
+// scan::Error (input) if the truth knows another number of scans.
 std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth,
                                      const VerifySettings& settings);
 
-// The measured surface moved into the truth's world frame by that motion.
+// That motion.
+Pose true_world_from_world(const RunResult& result, const Truth& truth);
+
+// The measured surface moved by it into the truth's world frame.
 Mesh in_true_world(const RunResult& result, const Truth& truth);
 
 }  // namespace scan

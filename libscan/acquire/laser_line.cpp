@@ -7,6 +7,7 @@
 
 #include "libscan/acquire/ray_outcome.h"
 #include "libscan/acquire/reason.h"
+#include "libscan/acquire/stripe_bias.h"
 #include "libscan/acquire/stripe_peak.h"
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
@@ -74,22 +75,44 @@ RayOutcome triangulate(const LaserLineCalibration& calibration, const decoding::
   return outcome;
 }
 
-RayOutcome decode_row(const StripeImages& frames, const LaserLineOptions& options, std::size_t step,
-                      int row) {
+struct Reading {
+  RayOutcome outcome;
+  decoding::StripePeak peak = {};  // where there is an outcome
+};
+
+Reading decode_row(const StripeImages& frames, const LaserLineOptions& options, std::size_t step,
+                   int row) {
   const Image<std::uint16_t>& image = frames.images[step];
   const Sensor& sensor = frames.calibration.sensor;
   std::vector<double> row_e(static_cast<std::size_t>(image.width));
   for (int column = 0; column < image.width; ++column)
     row_e[column] = decoding::electrons(sensor, image(column, row));
   const decoding::StripePeak peak = decoding::locate_stripe(row_e, sensor, options);
-  if (!peak.miss.empty()) return missed(peak.miss);
+  if (!peak.miss.empty()) return {missed(peak.miss)};
   RayOutcome outcome = triangulate(frames.calibration, peak, row);
-  if (!outcome.miss.empty()) return outcome;
+  if (!outcome.miss.empty()) return {outcome};
   const Pose& scanner_from_camera = frames.scanner_from_camera[step];
   outcome.point = scanner_from_camera * outcome.point;
   outcome.covariance =
       scanner_from_camera.linear() * outcome.covariance * scanner_from_camera.linear().transpose();
-  return outcome;
+  return {outcome, peak};
+}
+
+// The outcomes with the shift that noise does not tell of in their sigmas, too.
+std::vector<RayOutcome> widened(const StripeImages& frames, std::span<const Reading> readings) {
+  std::vector<decoding::LitRay> rays;
+  rays.reserve(readings.size());
+  for (const auto& [outcome, peak] : readings)
+    rays.push_back({outcome.point, peak.column_px, peak.width_px, peak.height_e});
+  std::vector<RayOutcome> outcomes(readings.size());
+  parallel_for(outcomes.size(), [&](std::size_t ray) {
+    outcomes[ray] = readings[ray].outcome;
+    if (!outcomes[ray].miss.empty()) return;
+    const double ratio = decoding::unseen_shift_px(frames, rays, ray) / readings[ray].peak.sigma_px;
+    outcomes[ray].sigma_m *= std::hypot(1, ratio);
+    outcomes[ray].covariance *= 1 + ratio * ratio;
+  });
+  return outcomes;
 }
 
 }  // namespace
@@ -97,12 +120,13 @@ RayOutcome decode_row(const StripeImages& frames, const LaserLineOptions& option
 Scan acquire_laser_line(const StripeImages& frames, const LaserLineOptions& options) {
   check(frames);
   const auto rows = static_cast<std::size_t>(frames.calibration.camera.height_px);
-  std::vector<RayOutcome> outcomes(frames.images.size() * rows);
-  parallel_for(outcomes.size(), [&](std::size_t ray) {
-    outcomes[ray] = decode_row(frames, options, ray / rows, static_cast<int>(ray % rows));
+  std::vector<Reading> readings(frames.images.size() * rows);
+  parallel_for(readings.size(), [&](std::size_t ray) {
+    readings[ray] = decode_row(frames, options, ray / rows, static_cast<int>(ray % rows));
   });
-  return decoding::collect(outcomes, {static_cast<std::uint32_t>(frames.images.size()),
-                                      static_cast<std::uint32_t>(rows)});
+  return decoding::collect(
+      widened(frames, readings),
+      {static_cast<std::uint32_t>(frames.images.size()), static_cast<std::uint32_t>(rows)});
 }
 
 }  // namespace scan

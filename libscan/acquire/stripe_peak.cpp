@@ -111,13 +111,16 @@ StripePeak locate_stripe(std::span<const double> row_e, const Sensor& sensor,
   if (is_misshapen(samples_in(signal_e, stripe, window_of(stripe, peak->shape)), peak->shape,
                    options.max_shape_error))
     return {.miss = reason::inconsistent};
-  const double height_e = peak->shape.amplitude;
+  const double height_e = peak->shape.amplitude, width_px = peak->shape.sigma;
   if (options.peak == PeakMethod::centroid)
     peak = centroid(samples_in(signal_e, stripe, {stripe.first, stripe.last}), peak->shape);
   else if (options.peak == PeakMethod::parabola)
     peak = parabola(signal_e, stripe, peak->shape);
   if (!peak) return {.miss = reason::ambiguous};
-  return {.column_px = peak->shape.centre, .sigma_px = peak->centre_sigma, .height_e = height_e};
+  return {.column_px = peak->shape.centre,
+          .sigma_px = peak->centre_sigma,
+          .width_px = width_px,
+          .height_e = height_e};
 }
 
 }  // namespace scan::decoding

@@ -17,6 +17,7 @@ struct StripePeak {
   std::string_view miss = {};
   double column_px = 0;
   double sigma_px = 0;
+  double width_px = 0;  // 1 sigma of the stripe itself
   double height_e = 0;  // above the background
 };
 

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "libscan/align/joint_guesses.h"
+#include "libscan/align/joint_motion.h"
 #include "libscan/align/joint_refinement.h"
 #include "libscan/align/overlaps.h"
 #include "libscan/core/median.h"
@@ -42,7 +44,6 @@ class Refinement {
   JointFrame frame() const;
   bool find_pairs(std::vector<JointDetail>* details);
   void settle(int most_rounds, const Progress& progress);
-  void add_way_to_guesses(std::vector<Vector6>& twists) const;
   std::vector<Vector6> damped(std::vector<Vector6> twists);
   bool move(const std::vector<Vector6>& twists);
   void summarise(const std::vector<JointDetail>& details);
@@ -128,28 +129,12 @@ bool Refinement::find_pairs(std::vector<JointDetail>* details) {
   return settled;
 }
 
-// Along weak motions the guesses are all there is to go by; pairs left them anywhere.
-void Refinement::add_way_to_guesses(std::vector<Vector6>& twists) const {
-  if (weak_.cols() == 0) return;
-  Eigen::VectorXd way = Eigen::VectorXd::Zero(weak_.rows());
-  for (std::size_t i = 0; i < twists.size(); ++i) {
-    if (!tied_[i] || i == anchor_) continue;
-    const Pose& here = out_.world_from_local[i];
-    Pose turn = Pose::Identity();
-    turn.linear() = guesses_[i].linear() * here.linear().transpose();
-    way.segment<3>(6 * Eigen::Index(i)) = log(turn).head<3>();
-    way.segment<3>(6 * Eigen::Index(i) + 3) =
-        (guesses_[i].translation() - here.translation()) / out_.size_m;
-  }
-  const Eigen::VectorXd part = weak_ * (weak_.transpose() * way);
-  for (std::size_t i = 0; i < twists.size(); ++i) twists[i] += part.segment<6>(6 * Eigen::Index(i));
-}
-
 // A step that has not become smaller goes to and fro between two sets of pairs: then, and while it
 // lasts, only a part of it is taken.
 std::vector<Vector6> Refinement::damped(std::vector<Vector6> twists) {
   double largest = 0;
-  for (const Vector6& twist : twists) largest = std::max(largest, twist.norm());
+  for (const RelativeStep& step : relative_steps(forms_, frame(), twists))
+    largest = std::max(largest, std::hypot(step.rotation_rad, step.translation));
   step_share_ = largest < 0.9 * last_step_ ? std::min(1.0, 2 * step_share_) : step_share_ / 2;
   last_step_ = largest;
   for (Vector6& twist : twists) twist *= step_share_;
@@ -158,23 +143,17 @@ std::vector<Vector6> Refinement::damped(std::vector<Vector6> twists) {
 
 // True if no step mattered.
 bool Refinement::move(const std::vector<Vector6>& twists) {
-  const std::vector<double> squares = squared_steps(forms_, frame(), twists);
+  const std::vector<RelativeStep> steps = relative_steps(forms_, frame(), twists);
   bool all_still = true;
   for (std::size_t i = 0; i < twists.size(); ++i) {
-    const Vector6& twist = twists[i];
     JointScan& scan = out_.scans[i];
-    const bool tiny = twist.head<3>().norm() <= options_.icp.stop_rotation_rad &&
-                      twist.tail<3>().norm() <= options_.icp.stop_translation_fraction;
-    scan.still = tiny || squares[i] <= negligible_square * step_share_ * step_share_;
+    const bool tiny = steps[i].rotation_rad <= options_.icp.stop_rotation_rad &&
+                      steps[i].translation <= options_.icp.stop_translation_fraction;
+    scan.still = tiny || steps[i].square <= negligible_square * step_share_ * step_share_;
     all_still = all_still && scan.still;
-    if (twist.isZero(0)) continue;
-    Pose& pose = out_.world_from_local[i];
-    Vector6 turn = Vector6::Zero();
-    turn.head<3>() = twist.head<3>();
-    pose = make_pose(nearest_rotation(exp(turn).linear() * pose.linear()),
-                     pose.translation() + out_.size_m * twist.tail<3>());
-    ++scan.iterations;
+    if (!twists[i].isZero(0)) ++scan.iterations;
   }
+  out_.world_from_local = moved_together(forms_, frame(), out_.world_from_local, twists);
   return all_still;
 }
 
@@ -185,10 +164,13 @@ void Refinement::settle(int most_rounds, const Progress& progress) {
     const bool settled = find_pairs(nullptr);
     if (forms_.empty()) break;
     std::vector<Vector6> twists = joint_step(forms_, frame(), weak_);
-    add_way_to_guesses(twists);
+    const WayToGuesses way = way_to_guesses(forms_, frame(), weak_, out_.world_from_local, guesses_,
+                                            icp_.max_pair_distance_m);
+    for (std::size_t i = 0; i < twists.size(); ++i) twists[i] += way.twists[i];
     const bool still = move(damped(std::move(twists)));
-    done = still && settled;
+    done = still && settled && way.whole;
     ++out_.rounds;
+    if (options_.on_round) options_.on_round(out_.world_from_local);
     if (progress) progress("refine", double(out_.rounds) / options_.max_rounds);
   }
 }

@@ -32,7 +32,7 @@ struct JointPoses {
 };
 
 // From poses near the answer; scans that are not tied and the anchor stay. Weak motions come to
-// stand as in the guesses.
+// stand as in the guesses. options.on_round gets world_from_local.
 JointPoses refine_jointly(const PreparedScans& scans, std::span<const Pose> world_from_local,
                           std::span<const Pose> guesses, const std::vector<bool>& tied,
                           std::size_t anchor, const MultiviewOptions& options,

@@ -37,9 +37,15 @@ JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame
 std::vector<Vector6> joint_step(std::span<const JointForm> forms, const JointFrame& frame,
                                 const JointBasis& weak);
 
-// Squared length of each scan's twist in units of its standard error, the others held.
-std::vector<double> squared_steps(std::span<const JointForm> forms, const JointFrame& frame,
-                                  std::span<const Vector6> twists);
+// What twists change between a scan and those that it is coupled to. How far all of them move
+// together says nothing: a chain of many may still sway where each couple has long settled.
+struct RelativeStep {
+  double square = 0;        // of its length in standard errors, the other couples free
+  double rotation_rad = 0;  // largest over the couples, and
+  double translation = 0;   // in units of the couple's size
+};
+std::vector<RelativeStep> relative_steps(std::span<const JointForm> forms, const JointFrame& frame,
+                                         std::span<const Vector6> twists);
 
 // The part of `weak` that is this scan's own: motions of its block that are not small against the
 // other scans'.

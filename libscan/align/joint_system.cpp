@@ -69,14 +69,15 @@ Eigen::VectorXd JointSystem::right_side() const {
   return b;
 }
 
-PlacePulls JointSystem::pulls_by_place(std::span<const JointDetail> details) const {
+PlacePulls JointSystem::pulls_by_place(std::span<const JointDetail> details,
+                                       std::span<const double> factors) const {
   PlacePulls places;
   for (std::size_t k = 0; k < forms_.size(); ++k) {
     const JointForm& form = forms_[k];
     for (const std::size_t scan : {form.source, form.target}) {
       if (!has(scan)) continue;
-      const Matrix6 carry =
-          (scan == form.source ? 1 : -1) * twist_to_form(frame_, scan, form).transpose();
+      const Matrix6 carry = (scan == form.source ? factors[k] : -factors[k]) *
+                            twist_to_form(frame_, scan, form).transpose();
       for (const PatchPull& pull : details[k].pulls) {
         Vector6& sum = places[pull.place].try_emplace(scan, Vector6::Zero()).first->second;
         sum += carry * pull.gradient;
@@ -86,14 +87,14 @@ PlacePulls JointSystem::pulls_by_place(std::span<const JointDetail> details) con
   return places;
 }
 
-JointEntries JointSystem::scatter(const PlacePulls& places, std::span<const double> shares) const {
+JointEntries JointSystem::scatter(const PlacePulls& places) const {
   // Added up block by block: each place meets few scans, each couple of scans many places.
   std::map<std::pair<std::size_t, std::size_t>, Matrix6> blocks;
   for (const auto& [place, pulls] : places)
     for (const auto& [i, a] : pulls)
       for (const auto& [j, b] : pulls) {
         Matrix6& sum = blocks.try_emplace({i, j}, Matrix6::Zero()).first->second;
-        sum += std::sqrt(shares[i] * shares[j]) * a * b.transpose();
+        sum += a * b.transpose();
       }
   JointEntries entries;
   for (const auto& [scans, block] : blocks)

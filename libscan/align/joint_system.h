@@ -44,10 +44,12 @@ class JointSystem {
   JointEntries sum_of(std::span<const JointDetail> details) const;  // of their curvatures
   Eigen::VectorXd right_side() const;
 
-  // Sum over all places of g g^T, g the pulls there of all forms together, those on a scan times
-  // the root of its share (noise_shares).
-  JointEntries scatter(const PlacePulls& places, std::span<const double> shares) const;
-  PlacePulls pulls_by_place(std::span<const JointDetail> details) const;
+  // The pulls of all forms, each times its form's factor: what it pulls the source with, it pulls
+  // the target back with.
+  PlacePulls pulls_by_place(std::span<const JointDetail> details,
+                            std::span<const double> factors) const;
+  // Sum over all places of g g^T, g the pulls there on all scans.
+  JointEntries scatter(const PlacePulls& places) const;
 
   // Between the unknowns and the twists of all scans.
   std::vector<Vector6> twists(const Eigen::VectorXd& x) const;

@@ -117,6 +117,7 @@ class Alignment {
   ScanEdge* edge_between(std::size_t source, std::size_t target);
   void solve();
   void refine();
+  std::vector<Pose> world_poses(std::span<const Pose> world_from_local) const;
   void report(const JointPoses& joint);
   void measure_agreement(const JointPoses& joint);
   Stop overall() const;
@@ -210,8 +211,24 @@ void Alignment::find_poses() {
   });
 }
 
+// Of the scans' own points, in the world where the guesses are.
+std::vector<Pose> Alignment::world_poses(std::span<const Pose> world_from_local) const {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < world_from_local.size(); ++i) {
+    const Pose& pose = world_from_local[i];
+    poses.push_back(make_pose(
+        pose.linear(), origin_ + pose.translation() - pose.linear() * scans_.clouds[i].origin));
+  }
+  return poses;
+}
+
 void Alignment::refine() {
-  JointPoses joint = refine_jointly(scans_, poses_, guesses_, tied_, anchor_, options_, progress_);
+  MultiviewOptions options = options_;
+  if (options_.on_round) {
+    options_.on_round(world_poses(poses_));
+    options.on_round = [&](std::span<const Pose> local) { options_.on_round(world_poses(local)); };
+  }
+  JointPoses joint = refine_jointly(scans_, poses_, guesses_, tied_, anchor_, options, progress_);
   poses_ = joint.world_from_local;
   result_.rounds = joint.rounds;
   result_.pairs_used = joint.overlapping.size();
@@ -220,6 +237,7 @@ void Alignment::refine() {
 }
 
 void Alignment::report(const JointPoses& joint) {
+  const std::vector<Pose> world = world_poses(poses_);
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const JointScan& found = joint.scans[i];
     ScanPose& scan = result_.scans[i];
@@ -234,10 +252,7 @@ void Alignment::report(const JointPoses& joint) {
     scan.stop = !found.still            ? Stop::iteration_limit
                 : found.weak.cols() > 0 ? Stop::degenerate
                                         : Stop::converged;
-    if (i == anchor_) continue;
-    const Pose& pose = poses_[i];
-    scan.world_from_scan = make_pose(
-        pose.linear(), origin_ + pose.translation() - pose.linear() * scans_.clouds[i].origin);
+    if (i != anchor_) scan.world_from_scan = world[i];
   }
 }
 

@@ -27,7 +27,8 @@ struct ScanEdge {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the overlap, target frame
   // Inverse covariance of the pose as a twist about the centre (rad, m), see IcpResult.
   Matrix6 information = Matrix6::Zero();
-  bool accepted = false;  // agrees with the poses that came of all pairs
+  bool accepted = false;        // agrees with the poses that came of all pairs
+  std::vector<Pose> path = {};  // target_from_source at its start and after each iteration
 };
 
 struct MultiviewOptions {
@@ -39,6 +40,8 @@ struct MultiviewOptions {
   std::vector<ScanEdge> known_edges = {};
   // Called for each pair that is aligned, in any order; never from two threads at once.
   std::function<void(const ScanEdge&)> on_edge = {};
+  // Called with the poses that the joint step begins with and with those after each of its rounds.
+  std::function<void(std::span<const Pose> world_from_scan)> on_round = {};
 };
 
 // Throws scan::Error (usage) naming the option and its limit.

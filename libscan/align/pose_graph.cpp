@@ -14,6 +14,7 @@
 #include <string>
 
 #include "libscan/align/pose_edge.h"
+#include "libscan/align/selected_inverse.h"
 #include "libscan/align/spanning_tree.h"
 #include "libscan/core/error.h"
 
@@ -249,13 +250,12 @@ void Graph::set_covariances() {
   const Eigen::SparseMatrix<double> scaled = scale.asDiagonal() * whole * scale.asDiagonal();
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(scaled);
   if (factor.info() != Eigen::Success || !(factor.vectorD().array() > open_share).all()) return;
+  const std::vector<Matrix6> blocks = inverse_blocks(scaled);
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (i == anchor_) out_.covariance[i] = Matrix6::Zero();
     if (row[i] < 0) continue;
-    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(whole.rows(), 6);
-    columns.middleRows<6>(row[i]) = Matrix6(scale.segment<6>(row[i]).asDiagonal());
-    columns = factor.solve(columns).eval();
-    out_.covariance[i] = scale.segment<6>(row[i]).asDiagonal() * columns.middleRows<6>(row[i]);
+    const auto own = scale.segment<6>(row[i]).asDiagonal();
+    out_.covariance[i] = own * blocks[std::size_t(row[i] / 6)] * own;
   }
 }
 

@@ -41,10 +41,15 @@ double agreement_of(const PreparedScans& scans, const ScanEdge& edge) {
 }
 
 ScanEdge align_from(const PreparedScans& scans, const EdgeTask& task, const Pose& start,
-                    const IcpOptions& options) {
+                    IcpOptions options) {
   ScanEdge edge{.source = task.source,
                 .target = task.target,
-                .target_from_source_guess = task.target_from_source_guess};
+                .target_from_source_guess = task.target_from_source_guess,
+                .path = {start}};
+  options.on_iteration = [&edge, tell = options.on_iteration](int iteration, const Pose& pose) {
+    edge.path.push_back(pose);
+    if (tell) tell(iteration, pose);
+  };
   const IcpResult result =
       icp(scans.clouds[task.source], scans.clouds[task.target], start, options);
   edge.target_from_source = result.target_from_source;

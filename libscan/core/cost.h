@@ -22,7 +22,12 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// Largest resident memory of this process so far, MiB (1 MiB = 2^20 bytes).
+// Largest resident memory of this process, MiB (1 MiB = 2^20 bytes), since it began or since the
+// last restart.
 double peak_memory_mib();
+
+// Gives what is free back to the system and begins the peak anew, where the system lets us; else
+// the peak stays that of the whole process.
+void restart_peak_memory();
 
 }  // namespace scan

@@ -8,6 +8,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/shape_json.h"
+#include "libscan/verify/definitions.h"
 
 namespace scan {
 namespace {
@@ -101,6 +102,14 @@ ordered_json surface_json(const SurfaceResult& result) {
           {"finest_cell_m", number(result.finest_cell_m)},
           {"sigma_m", number(result.sigma_m)},
           {"smoothing_length_m", number(result.smoothing_length_m)},
+          {"triangles_before_decimation", result.decimation.triangles_before},
+          {"decimation_bound_m",
+           result.decimation.is_proven ? number(result.decimation.bound_m) : ordered_json(nullptr)},
+          {"sharp_edge_vertices", result.sharp.edge_vertices},
+          {"sharp_corners", result.sharp.corners},
+          {"area_m2", number(area_m2(result.surface))},
+          {"unsupported_area_m2", number(unsupported_area_m2(result))},
+          {"trimmed_area_m2", number(result.trimmed_area_m2)},
           {"stop", name_of(result.stop)},
           {"invalid_points", result.invalid_points},
           {"outlying_points", result.outlying_points},
@@ -115,6 +124,7 @@ ordered_json measurement_json(const Measurement& m) {
   return {{"name", m.name},
           {"value", number(m.value)},
           {"unit", m.unit},
+          {"definition", definition(m.name)},
           {"over", m.over},
           {"count", m.count},
           {"limit", if_limited(number(m.limit.value_or(0)))},

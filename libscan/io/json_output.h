@@ -38,8 +38,8 @@ nlohmann::ordered_json alignment_json(std::span<const std::string> files,
 // `estimated_normals`, `turned_normals`.
 nlohmann::ordered_json surface_json(const SurfaceResult& result);
 
-// `name`, `value`, `unit`, `over`, `count`, `limit`, `relation`, `pass`, `reason`; limit, relation
-// and reason are null without a limit.
+// `name`, `value`, `unit`, `definition`, `over`, `count`, `limit`, `relation`, `pass`, `reason`,
+// `interval`; limit, relation and reason are null without a limit, interval where there is none.
 nlohmann::ordered_json measurement_json(const Measurement& measurement);
 nlohmann::ordered_json verdict_json(const Verdict& verdict);  // `measurements`, `pass`
 

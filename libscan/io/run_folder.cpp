@@ -16,10 +16,11 @@ namespace scan {
 namespace {
 
 constexpr const char* record_name = "stages.json";
-constexpr std::array<const char*, 13> run_names = {
-    record_name,    "recipe.json",    "effects.json", "scans",       "raw",
-    "truth",        "alignment.json", "poses.tum",    "aligned.ply", "reconstruction.json",
-    "verdict.json", "surface.ply",    "report.html"};
+constexpr std::array<const char*, 16> run_names = {
+    record_name,    "recipe.json",     "effects.json", "scans",
+    "raw",          "truth",           "poses.tum",    "alignment.json",
+    "aligned.ply",  "pose_trace.json", "surface.ply",  "reconstruction.json",
+    "verdict.json", "report.html",     "report.json",  "report.csv"};
 
 bool holds_run(const std::filesystem::path& path) {
   return std::any_of(run_names.begin(), run_names.end(),

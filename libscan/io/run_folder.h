@@ -3,7 +3,8 @@
 // The folder of one run, and which of its stages are done.
 //
 //   recipe.json effects.json scans/000.ply ... raw/000/... truth/ alignment.json poses.tum
-//   aligned.ply surface.ply reconstruction.json verdict.json report.html stages.json
+//   pose_trace.json aligned.ply surface.ply reconstruction.json verdict.json report.html
+//   report.json report.csv stages.json
 //
 // stages.json records each finished stage: the fingerprint of what it was made from and one for
 // each file that it wrote. It holds no times: a run's files do not depend on the number of threads.

@@ -13,12 +13,13 @@ namespace scan {
 struct MethodChoice {
   ReconstructMethod method = ReconstructMethod::ssd;
   std::string reason;     // one sentence
-  double rim_share = 0;   // of the points that have no neighbours on one side
+  double rim_extent = 0;  // of the longest chain of points without neighbours on one side, over all
   double unflatness = 0;  // thickness over width of the median neighbourhood: noise, or bends
 };
 
-// A surface with an end (over 2 % of the points on rims) is fused where the scanners are known;
-// where they are not, and the points lie flat (below 0.1), it is fitted locally, which ends where
+// A surface with an end (a rim half as long as the whole, whatever the number of points; holes have
+// short rims) is fused where the scanners are known;
+// where they are not, and the points lie flat (below 0.25), it is fitted locally, which ends where
 // the samples end. Everything else is a closed surface or noisy: SSD.
 MethodChoice choose_method(const PreparedPoints& points);
 

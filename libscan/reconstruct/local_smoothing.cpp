@@ -13,6 +13,11 @@ namespace scan {
 namespace {
 
 constexpr double samples_per_region = 50;
+// Two fits differ by the same waves over some lengths: sums must reach over several such, or chance
+// decides. Each pass of around() spreads by a variance of half a region's width squared.
+constexpr double reach_in_lengths = 2;
+constexpr int most_passes = 16;
+
 std::uint64_t key_of(const Eigen::Vector3i& cell) {
   return static_cast<std::uint64_t>(cell[2]) << 42 | static_cast<std::uint64_t>(cell[1]) << 21 |
          static_cast<std::uint64_t>(cell[0]);
@@ -60,6 +65,7 @@ LocalSmoothing::LocalSmoothing(const Samples& samples) : samples_(samples) {
           (i % 3 - 1) + (std::int64_t{i / 3 % 3 - 1} << 21) + (std::int64_t{i / 9 - 1} << 42);
       neighbours_[r][i] = find(keys[r] + static_cast<std::uint64_t>(step));
     }
+  region_width_ = cell;
   risk_.assign(keys.size(), std::numeric_limits<double>::infinity());
   length_.assign(keys.size(), 1.0);
 }
@@ -90,19 +96,22 @@ std::vector<double> LocalSmoothing::lengths() const {
 }
 
 double LocalSmoothing::judge(double trial, const std::vector<double>& residuals) {
-  std::vector<double> sums(length_.size(), 0.0), counts = sums;
+  std::vector<double> risk(length_.size(), 0.0), counts = risk, gain = risk;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const double sigma2 = samples_.sigma[i] * samples_.sigma[i];
-    sums[region_of_[i]] +=
+    risk[region_of_[i]] +=
         residuals[i] * residuals[i] + 2 * sigma2 * leverage(samples_.area[i], trial);
     counts[region_of_[i]] += 1;
   }
-  const std::vector<double> risk = around(sums), weight = around(counts);
+  for (std::size_t r = 0; r < risk.size(); ++r) gain[r] = risk_[r] - risk[r];
+  const double widths = reach_in_lengths * trial / region_width_;
+  const int passes = std::clamp(static_cast<int>(std::ceil(2 * widths * widths)), 1, most_passes);
+  for (int pass = 0; pass < passes; ++pass) gain = around(gain);
   double lowered = 0, all = 0;
   for (std::size_t r = 0; r < risk.size(); ++r) {
     all += counts[r];
-    if (!(risk[r] / weight[r] < risk_[r])) continue;
-    risk_[r] = risk[r] / weight[r];
+    if (!(gain[r] > 0)) continue;
+    risk_[r] = risk[r];
     length_[r] = trial;
     lowered += counts[r];
   }

@@ -3,6 +3,7 @@
 #include "libscan/reconstruct/prepare_points.h"
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "libscan/core/error.h"
@@ -82,6 +83,10 @@ PreparedPoints prepare_points(const PointCloud& cloud,
   leave_out_invalid(prepared);
   const LocalPlanes planes = leave_out_outliers(prepared);
   complete_normals(prepared, planes);
+  // A disc of the neighbours' reach holds one sample for each square of the spacing.
+  for (const LocalPlane& plane : planes.planes)
+    prepared.spacing_m.push_back(
+        plane.reach_m * std::sqrt(std::numbers::pi / static_cast<double>(planes.neighbours)));
   prepared.turned_normals =
       agree_with_neighbours(prepared.cloud.points, planes.around, prepared.cloud.normals);
   return prepared;

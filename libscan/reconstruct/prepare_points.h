@@ -12,6 +12,7 @@ namespace scan {
 struct PreparedPoints {
   PointCloud cloud;
   std::vector<Eigen::Vector3d> viewpoints;  // of the points that are left; empty: unknown
+  std::vector<double> spacing_m;            // about each point
   std::size_t invalid_points = 0;           // not finite, left out
   std::size_t outlying_points = 0;          // left out (outliers.h)
   std::size_t estimated_normals = 0;        // were missing and are plane fits now

@@ -9,6 +9,8 @@
 #include "libscan/reconstruct/delaunay.h"
 #include "libscan/reconstruct/poisson.h"
 #include "libscan/reconstruct/scale_space.h"
+#include "libscan/reconstruct/sharp_features.h"
+#include "libscan/reconstruct/support.h"
 
 namespace scan {
 namespace {
@@ -24,6 +26,8 @@ SurfaceResult surface_by(ReconstructMethod method, const PreparedPoints& points,
       return poisson(points.cloud);
     case ReconstructMethod::mls:
       return mls(points.cloud, options.mls, progress);
+    case ReconstructMethod::rbf:
+      return rbf(points.cloud, options.rbf, progress);
     case ReconstructMethod::range_fusion:
       return range_fusion(points.cloud, points.viewpoints, options.range_fusion, progress);
     case ReconstructMethod::delaunay:
@@ -64,8 +68,8 @@ void require_extent(const PointCloud& cloud, ReconstructMethod method) {
 }  // namespace
 
 const std::vector<std::string>& reconstruct_method_names() {
-  static const std::vector<std::string> names{"auto",         "ssd",      "poisson",    "mls",
-                                              "range-fusion", "delaunay", "scale-space"};
+  static const std::vector<std::string> names{"auto", "ssd",          "poisson",  "mls",
+                                              "rbf",  "range-fusion", "delaunay", "scale-space"};
   return names;
 }
 
@@ -88,6 +92,9 @@ SurfaceResult reconstruct(const PointCloud& cloud, std::span<const Eigen::Vector
   result.outlying_points += points.outlying_points;
   result.estimated_normals = points.estimated_normals;
   result.turned_normals = points.turned_normals;
+  if (options.sharp)
+    result.sharp = sharpen(result, points.cloud.points, points.cloud.normals, points.spacing_m);
+  result.data_spacing_m = of_nearest_points(result.surface, points.cloud.points, points.spacing_m);
   result.cost.seconds = watch.seconds();
   return result;
 }

@@ -15,11 +15,21 @@
 #include "libscan/reconstruct/moving_least_squares.h"
 #include "libscan/reconstruct/prepare_points.h"
 #include "libscan/reconstruct/range_fusion.h"
+#include "libscan/reconstruct/rbf.h"
 #include "libscan/reconstruct/ssd.h"
 
 namespace scan {
 
-enum class ReconstructMethod { automatic, ssd, poisson, mls, range_fusion, delaunay, scale_space };
+enum class ReconstructMethod {
+  automatic,
+  ssd,
+  poisson,
+  mls,
+  rbf,
+  range_fusion,
+  delaunay,
+  scale_space
+};
 
 // In the order of the enumeration, as they are written.
 const std::vector<std::string>& reconstruct_method_names();
@@ -29,7 +39,9 @@ struct ReconstructOptions {
   ReconstructMethod method = ReconstructMethod::ssd;
   SsdOptions ssd;
   MlsOptions mls;
+  RbfOptions rbf;
   RangeFusionOptions range_fusion;
+  bool sharp = false;  // edges and corners put back (sharp_features.h)
 };
 
 // Prepares the points (prepare_points.h) and calls the method; `automatic` ("auto") is one that

@@ -26,9 +26,9 @@ struct Samples {
 // neighbour (k = 10), then the median over these neighbours, so that a stray point has no more
 // weight than the points it strayed from; neighbours are looked for among every m-th point, m such
 // that they lie several sigma away, since scatter moves near points apart. Sigma is the points' own
-// if they have it (a scanner's, along its rays), else `sigma_m`, or if that is 0, estimate_sigma(),
-// in all directions. Throws scan::Error (input) for
-// fewer than 16 valid points at different places or a cloud without extent.
+// if they have it (a scanner's, along its rays), else `sigma_m`, or if that is 0, what
+// estimate_noise() finds, in all directions. Throws scan::Error (input) for fewer than 16 valid
+// points at different places or a cloud without extent.
 Samples prepare_samples(const PointCloud& cloud, double sigma_m = 0);
 
 // Depth of each sample: the deepest whose cells are not narrower than one spacing and 1.5 sigma,

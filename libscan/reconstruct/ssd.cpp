@@ -70,8 +70,8 @@ void check(const SsdOptions& options) {
   require(is_length(options.sigma_m), "sigma_m", options.sigma_m, "at least 0");
   require(is_length(options.smoothing_length_m), "smoothing_length_m", options.smoothing_length_m,
           "at least 0");
-  require(options.relative_residual > 0 && options.relative_residual < 1, "relative_residual",
-          options.relative_residual, "between 0 and 1");
+  require(options.relative_residual >= 0 && options.relative_residual < 1, "relative_residual",
+          options.relative_residual, "0 to below 1");
   require(options.max_iterations > 0, "max_iterations", options.max_iterations, "above 0");
 }
 

@@ -10,10 +10,10 @@ namespace scan {
 
 // What is 0 is chosen from the points.
 struct SsdOptions {
-  int depth = 12;                   // most: cells are not narrower than box / 2^depth; 3 to 12
-  double sigma_m = 0;               // scatter of points that do not carry their own
-  double smoothing_length_m = 0;    // least; ripples of 2 pi times this length are halved
-  double relative_residual = 5e-3;  // of the energy norm, see SsdSolution
+  int depth = 12;                 // most: cells are not narrower than box / 2^depth; 3 to 12
+  double sigma_m = 0;             // scatter of points that do not carry their own
+  double smoothing_length_m = 0;  // least; ripples of 2 pi times this length are halved
+  double relative_residual = 0;   // of the energy norm, see SsdSolution
   int max_iterations = 2000;
 };
 void check(const SsdOptions& options);

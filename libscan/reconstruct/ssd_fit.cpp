@@ -11,14 +11,31 @@
 namespace scan {
 namespace {
 
-constexpr double gradient_share = 0.1;
-// Exact samples also give slopes, so that less than a spacing is of use.
-constexpr double least_spacings = 0.4;
+// Points scattered to both sides of the surface pull f flat: this keeps its slope.
+constexpr double slope_share = 0.03;
+// The mean square of f over a flat square patch of the sample's area is f^2 + |slope|^2 area / 12.
+constexpr double patch_share = 1.0 / 12;
+// The scatter, in spacings, from which on normals tell no more than the points.
+constexpr double exact_sigma = 0.02;
+constexpr double least_spacings = 0.4, least_spacings_exact = 0.2;
 // A function that bends within the scatter passes through the samples one by one.
-constexpr double least_sigmas = 1.5;
+constexpr double least_sigmas = 1;
+// So much of the solution's energy norm moves the surface by less than scatter, or cells, do.
+constexpr double residual_of_scattered = 5e-3, residual_of_exact = 1e-3;
 // A trial has only to tell which of two lengths is better.
 constexpr double trial_residual = 0.03;
 constexpr double least_share_lowered = 0.02;
+
+// One for exact samples, nothing for scattered ones.
+double exactness(double area, double sigma) {
+  return std::max(0.0, 1 - sigma * sigma / (exact_sigma * exact_sigma * area));
+}
+
+// Exact samples also give slopes, so that a fifth of a spacing is of use.
+double least_length(double area, double sigma) {
+  const double spacings = std::lerp(least_spacings, least_spacings_exact, exactness(area, sigma));
+  return spacings * std::sqrt(area);
+}
 
 class Fit {
  public:
@@ -31,14 +48,22 @@ class Fit {
     result_.solution.coefficients = active_arrays(grid);
   }
 
-  // Down to lengths of `shortest`, as long as shorter ones are better somewhere.
-  void search(double shortest, const Progress& progress) {
+  // The least length everywhere; a start from the coarser levels.
+  void start(const Progress& progress) {
+    result_.length.assign(samples_.points.size(), options_.length);
+    for (std::size_t l = 0; l + 1 < levels_; ++l) {
+      report(progress, l);
+      system_.use_levels(l);
+      solve(weights(std::max(length_at(l), options_.length)), trial_residual);
+    }
+  }
+
+  // Down to the least length, as long as shorter ones are better somewhere.
+  void search(const Progress& progress) {
     LocalSmoothing smoothing(samples_);
-    double trial = 2 * lengths_per_cell / (1 << coarsest_depth);
-    for (std::size_t l = 0; l < levels_ || trial > 1.2 * shortest; ++l) {
-      if (progress)
-        progress("solve", static_cast<double>(l) / static_cast<double>(std::max(l, levels_) + 1));
-      trial = std::max(trial / 2, shortest);
+    for (std::size_t l = 0; l < levels_ || length_at(l - 1) > 1.2 * options_.length; ++l) {
+      report(progress, l);
+      const double trial = std::max(length_at(l), options_.length);
       if (l < levels_) system_.use_levels(l);
       solve(weights(trial), trial_residual);
       const double lowered = smoothing.judge(trial, system_.residuals(coefficients()));
@@ -65,6 +90,16 @@ class Fit {
   SsdFit take() { return std::move(result_); }
 
  private:
+  // In step with the cells of level l, and on past the finest level.
+  static double length_at(std::size_t l) {
+    return std::ldexp(lengths_per_cell, -coarsest_depth - static_cast<int>(l));
+  }
+
+  void report(const Progress& progress, std::size_t l) const {
+    if (progress)
+      progress("solve", static_cast<double>(l) / static_cast<double>(std::max(l, levels_) + 1));
+  }
+
   LevelArrays& coefficients() { return result_.solution.coefficients; }
 
   SampleWeights weights(double length) const {
@@ -95,19 +130,30 @@ class Fit {
 SampleWeights smoothing_weights(const Samples& samples, const std::vector<double>& length) {
   SampleWeights weights;
   for (std::size_t i = 0; i < length.size(); ++i) {
-    const double l = std::max(length[i], least_spacings * std::sqrt(samples.area[i]));
-    weights.value.push_back(4 * samples.area[i] / (l * l * l));
-    weights.gradient.push_back(gradient_share * l * l * weights.value.back());
+    const double area = samples.area[i], sigma = samples.sigma[i];
+    const double l = std::max(length[i], least_length(area, sigma));
+    weights.value.push_back(4 * area / (l * l * l));
+    weights.gradient.push_back((slope_share * l * l + patch_share * exactness(area, sigma) * area) *
+                               weights.value.back());
   }
   return weights;
 }
 
 SsdFit fit_surface(const OctreeGrid& grid, const Samples& samples, const SsdFitOptions& options,
                    const Progress& progress) {
-  Fit fit(grid, samples, options);
-  const double chosen = std::max(least_spacings * std::sqrt(median(samples.area)),
-                                 least_sigmas * median(samples.sigma));
-  fit.search(options.length > 0 ? options.length : chosen, progress);
+  const double area = median(samples.area), sigma = median(samples.sigma);
+  const bool exact = exactness(area, sigma) > 0;
+  SsdFitOptions chosen = options;
+  if (!(options.length > 0))
+    chosen.length = std::max(least_length(area, sigma), least_sigmas * sigma);
+  if (!(options.relative_residual > 0))
+    chosen.relative_residual = exact ? residual_of_exact : residual_of_scattered;
+  Fit fit(grid, samples, chosen);
+  // Residuals of exact samples are of the cells' making: there shorter is better.
+  if (exact)
+    fit.start(progress);
+  else
+    fit.search(progress);
   fit.finish();
   if (progress) progress("solve", 1);
   return fit.take();

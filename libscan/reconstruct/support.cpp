@@ -32,6 +32,16 @@ std::vector<double> distance_to_points(const Mesh& mesh, std::span<const Eigen::
   return distances;
 }
 
+std::vector<double> of_nearest_points(const Mesh& mesh, std::span<const Eigen::Vector3d> points,
+                                      std::span<const double> values) {
+  const KdTree tree(points);
+  std::vector<Neighbour> nearest;
+  nearest_of_each(tree, mesh.vertices, unlimited_m, curve_order(mesh.vertices), nearest);
+  std::vector<double> found(mesh.vertices.size());
+  for (std::size_t i = 0; i < found.size(); ++i) found[i] = values[nearest[i].index];
+  return found;
+}
+
 std::vector<std::uint32_t> triangle_components(const Mesh& mesh) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);

@@ -12,6 +12,10 @@ namespace scan {
 // Distance of each vertex to the nearest point.
 std::vector<double> distance_to_points(const Mesh& mesh, std::span<const Eigen::Vector3d> points);
 
+// At each vertex what `values` holds for the point nearest to it.
+std::vector<double> of_nearest_points(const Mesh& mesh, std::span<const Eigen::Vector3d> points,
+                                      std::span<const double> values);
+
 // Component of each triangle (connected by shared vertices), numbered by first appearance.
 std::vector<std::uint32_t> triangle_components(const Mesh& mesh);
 

@@ -15,11 +15,27 @@ namespace scan {
 enum class SolveStop { converged, iteration_limit, direct };
 std::string_view name_of(SolveStop stop);
 
+// What putting sharp features back has done (sharp_features.h).
+struct SharpReport {
+  std::size_t moved_vertices = 0;
+  std::size_t edge_vertices = 0;  // on sharp edges now, corners counted
+  std::size_t corners = 0;
+};
+
+// What decimation has done (decimate.h).
+struct DecimateReport {
+  double tolerance_m = 0;
+  double bound_m = 0;                // of the distance between the surfaces, both ways
+  std::size_t triangles_before = 0;  // 0: nothing was asked for
+  bool is_proven = false;            // else the surface stayed as it was
+};
+
 struct SurfaceResult {
   Mesh surface;
-  std::string method;             // set by reconstruct()
-  std::string method_reason;      // why this one
-  std::vector<double> support_m;  // per vertex: distance to the nearest data point
+  std::string method;                  // set by reconstruct()
+  std::string method_reason;           // why this one
+  std::vector<double> support_m;       // per vertex: distance to the nearest data point
+  std::vector<double> data_spacing_m;  // per vertex: how far apart the data are there
   // Per vertex: one standard deviation across the surface, from the points' scatter and the
   // smoothing; of the surface beside the nearest point. Empty: the method does not know.
   std::vector<double> standard_error_m;
@@ -35,7 +51,17 @@ struct SurfaceResult {
   std::size_t outlying_points = 0;    // on no surface, left out
   std::size_t estimated_normals = 0;  // were missing
   std::size_t turned_normals = 0;     // pointed the wrong way
+  SharpReport sharp;
+  DecimateReport decimation;
+  double trimmed_area_m2 = 0;  // of surface without support, cut away
   Cost cost;
 };
+
+// Surface within so many spacings of the data is supported: of random samples one is as near with
+// probability 1 - exp(-9 pi). Farther off it is a guess that goes on from around.
+inline constexpr int supported_within_spacings = 3;
+
+// Of the triangles with a vertex that is not supported; 0 if the spacing of the data is not known.
+double unsupported_area_m2(const SurfaceResult& result);
 
 }  // namespace scan

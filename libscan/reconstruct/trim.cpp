@@ -22,6 +22,7 @@ void keep_only(SurfaceResult& result, const std::vector<char>& keep) {
     values = std::move(kept);
   };
   keep_of(result.support_m);
+  keep_of(result.data_spacing_m);
   keep_of(result.standard_error_m);
 }
 
@@ -64,7 +65,9 @@ TrimReport trim(SurfaceResult& result, double max_support_m, double min_componen
   }
   keep_only(result, keep);
   keep_only(result, large_components(result.surface, min_component_fraction));
-  return {area - area_m2(result.surface), triangles - result.surface.triangles.size()};
+  const double removed_area_m2 = area - area_m2(result.surface);
+  result.trimmed_area_m2 += removed_area_m2;
+  return {removed_area_m2, triangles - result.surface.triangles.size()};
 }
 
 }  // namespace scan

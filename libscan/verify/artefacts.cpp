@@ -201,4 +201,57 @@ std::vector<Measurement> step_errors(std::span<const Step> steps, double true_he
                  over_places(steps.size(), "measured less true height, farthest from 0"), points)};
 }
 
+std::vector<Measurement> length_errors(std::span<const PlacedBall> balls) {
+  if (balls.size() < 2) throw Error(Trouble::input, "length error: needs two balls at least");
+  Points centres;
+  std::size_t points = 0;
+  for (const PlacedBall& ball : balls) {
+    centres.push_back(
+        refitted(ball.points, [](const Points& p) { return fit_sphere(p); }).centre_m);
+    points += ball.points.size();
+  }
+  double error_m = 0;
+  for (std::size_t i = 0; i < balls.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      error_m =
+          farther_from_zero(error_m, (centres[i] - centres[k]).norm() -
+                                         (balls[i].true_centre - balls[k].true_centre).norm());
+  const std::size_t pairs = balls.size() * (balls.size() - 1) / 2;
+  return {figure("length_error", error_m, "m",
+                 "fitted less true distance of centres, farthest from 0 over " +
+                     std::to_string(pairs) + " pairs of balls",
+                 points)};
+}
+
+std::vector<Measurement> relative_range_errors(std::span<const PlacedPlate> plates,
+                                               const Eigen::Vector3d& line) {
+  check_places(plates.size(), "relative range");
+  double first_m = 0, error_m = 0;
+  std::size_t points = 0;
+  for (const PlacedPlate& plate : plates) {
+    const PlaneFit fit = refitted(plate.points, [](const Points& p) { return fit_plane(p); });
+    const double behind_m =
+        fit.normal.dot(fit.point_m - plate.true_point) / fit.normal.dot(line.normalized());
+    if (&plate == &plates.front()) first_m = behind_m;
+    error_m = farther_from_zero(error_m, behind_m - first_m);
+    points += plate.points.size();
+  }
+  return {figure("relative_range_error", error_m, "m",
+                 over_places(plates.size(), "distance behind the first plate, farthest from 0"),
+                 points)};
+}
+
+Measurement repeatability(const Measurement& of, std::span<const double> values) {
+  if (values.size() < 2) throw Error(Trouble::input, "repeatability: needs two values at least");
+  const auto n = static_cast<double>(values.size());
+  double sum = 0, squares = 0;
+  for (const double value : values) sum += value;
+  for (const double value : values) squares += (value - sum / n) * (value - sum / n);
+  return {.name = of.name + "_repeatability",
+          .value = std::sqrt(squares / (n - 1)),
+          .unit = of.unit,
+          .over = "repetitions with other noise",
+          .count = values.size()};
+}
+
 }  // namespace scan

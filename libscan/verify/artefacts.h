@@ -56,4 +56,26 @@ struct Step {
 };
 std::vector<Measurement> step_errors(std::span<const Step> steps, double true_height_m);
 
+// Balls at known centres, each as seen from the same scanner. length_error: distance of two fitted
+// centres less the true one, of all pairs the one farthest from 0 (VDI/VDE 2634 part 1; for
+// time-of-flight scanners the point-to-point distance of ASTM E3125).
+struct PlacedBall {
+  Points points;
+  Eigen::Vector3d true_centre;
+};
+std::vector<Measurement> length_errors(std::span<const PlacedBall> balls);
+
+// Plates one behind the other on a line. relative_range_error: how much farther than in truth a
+// plate stands behind the first, along the line, the one farthest from 0 (ASTM E2938).
+struct PlacedPlate {
+  Points points;
+  Eigen::Vector3d true_point;  // where the line meets its face
+};
+std::vector<Measurement> relative_range_errors(std::span<const PlacedPlate> plates,
+                                               const Eigen::Vector3d& line);
+
+// Of the same figure measured several times: <name>_repeatability, its standard deviation. Throws
+// scan::Error (input) for fewer than two values.
+Measurement repeatability(const Measurement& figure, std::span<const double> values);
+
 }  // namespace scan

@@ -99,6 +99,32 @@ std::vector<PoseError> relative_pose_errors(std::span<const Pose> estimated,
   return errors;
 }
 
+std::vector<Measurement> target_registration_error(
+    std::span<const Pose> estimated, std::span<const Pose> truth, PointLists points,
+    std::span<const Eigen::Vector3d> targets_in_world) {
+  if (targets_in_world.empty()) throw Error(Trouble::input, "target registration: no target");
+  const Pose true_from_estimated = gauge(estimated, truth, points);
+  double worst_rms_m = 0, worst_m = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Pose moved = true_from_estimated * estimated[i] * truth[i].inverse();
+    std::vector<double> errors_m;
+    for (const auto& target : targets_in_world)
+      errors_m.push_back((moved * target - target).norm());
+    worst_rms_m = std::max(worst_rms_m, root_mean_square(errors_m));
+    worst_m = std::max(worst_m, quantile(errors_m, 1));
+  }
+  const auto figure = [&](const char* name, double value) {
+    return Measurement{.name = name,
+                       .value = value,
+                       .unit = "m",
+                       .over = std::to_string(targets_in_world.size()) +
+                               " targets, largest over the scans, world frame fitted",
+                       .count = truth.size()};
+  };
+  return {figure("target_registration_error", worst_rms_m),
+          figure("target_registration_error_max", worst_m)};
+}
+
 std::vector<Measurement> summarise_relative(const std::vector<PoseError>& errors) {
   if (errors.empty()) return {};
   std::vector<double> rotations_rad, translations_m;

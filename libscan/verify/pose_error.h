@@ -40,6 +40,16 @@ std::vector<PoseError> relative_pose_errors(
 // and their means; nothing for no errors.
 std::vector<Measurement> summarise_relative(const std::vector<PoseError>& errors);
 
+// target_registration_error: how far each scan's pose carries the targets from their true places,
+// root mean square over the targets, largest over the scans; target_registration_error_max, of the
+// farthest target (Fitzpatrick et al. 1998). The world frame is fitted as in pose_errors, so
+// targets count that no scan saw. Throws as pose_errors does, and scan::Error (input) for no
+// target.
+std::vector<Measurement> target_registration_error(
+    std::span<const Pose> estimated, std::span<const Pose> truth,
+    std::span<const std::vector<Eigen::Vector3d>> points_in_scanner,
+    std::span<const Eigen::Vector3d> targets_in_world);
+
 // rotation_error, translation_error, pose_error_rms (largest over scans) and their means over
 // scans, rotation_error_mean, translation_error_mean, pose_error_rms_mean.
 std::vector<Measurement> summarise(const std::vector<PoseError>& errors);

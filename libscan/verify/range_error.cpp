@@ -6,6 +6,7 @@
 #include <string>
 
 #include "libscan/core/error.h"
+#include "libscan/verify/stated_uncertainty.h"
 #include "libscan/verify/statistics.h"
 #include "libscan/verify/surface_error.h"
 
@@ -39,8 +40,18 @@ std::map<std::uint32_t, std::size_t> first_returns(const PointCloud& cloud,
 }
 
 struct RangeErrors {
-  std::vector<double> signed_m, unsigned_m, over_sigma;
+  std::vector<double> signed_m, unsigned_m;
+  NormalisedErrors normalised;
 };
+
+// By the covariance, which knows the line on which the device measured (a moving camera's is not
+// the line from the scanner's origin), else by sigma along the ray.
+std::optional<double> normalised(const PointCloud& cloud, std::size_t i,
+                                 const Eigen::Vector3d& error_m, double along_ray_m) {
+  if (!cloud.covariances.empty()) return normalised_square(error_m, cloud.covariances[i]);
+  if (cloud.sigma_m.empty() || !(cloud.sigma_m[i] > 0)) return std::nullopt;
+  return (along_ray_m / cloud.sigma_m[i]) * (along_ray_m / cloud.sigma_m[i]);
+}
 
 RangeErrors range_errors(const PointCloud& cloud, std::span<const std::uint32_t> ray,
                          const ScanTruth& truth) {
@@ -49,11 +60,12 @@ RangeErrors range_errors(const PointCloud& cloud, std::span<const std::uint32_t>
     const RayTruth& hit = truth.rays[r];
     if (hit.object < 0) continue;
     const Eigen::Vector3d along = hit.point_in_scanner.normalized();
-    const double error_m = along.dot(cloud.points[i] - hit.point_in_scanner);
-    errors.signed_m.push_back(error_m);
-    errors.unsigned_m.push_back(std::abs(error_m));
-    if (!cloud.sigma_m.empty() && cloud.sigma_m[i] > 0)
-      errors.over_sigma.push_back(error_m / cloud.sigma_m[i]);
+    const Eigen::Vector3d error_m = cloud.points[i] - hit.point_in_scanner;
+    const double along_ray_m = along.dot(error_m);
+    errors.signed_m.push_back(along_ray_m);
+    errors.unsigned_m.push_back(std::abs(along_ray_m));
+    if (const auto square = normalised(cloud, i, error_m, along_ray_m))
+      errors.normalised.squares.push_back(*square);
   }
   return errors;
 }
@@ -78,9 +90,9 @@ std::vector<Measurement> range_error(const PointCloud& cloud, std::span<const st
       figure("range_error_p95", quantile(errors.unsigned_m, 0.95), "m", over, count),
       figure("ray_hit_fraction", static_cast<double>(count) / static_cast<double>(truly_hit), "1",
              "rays that truly hit", truly_hit)};
-  if (!errors.over_sigma.empty())
-    figures.push_back(figure("normalised_range_error_rms", root_mean_square(errors.over_sigma), "1",
-                             "first returns with a sigma", errors.over_sigma.size()));
+  for (Measurement& stated :
+       stated_uncertainty("range", errors.normalised, "first returns with a sigma"))
+    figures.push_back(std::move(stated));
   return figures;
 }
 

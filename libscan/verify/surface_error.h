@@ -47,7 +47,8 @@ struct SurfaceErrorOptions {
 };
 
 // accuracy_mean, _rms, _median, _p95, _p997, _max (measured to truth, unsigned), the same of
-// completeness (truth to measured), hausdorff (the larger of the two maxima), f_score,
+// completeness (truth to measured), hausdorff (the larger of the two maxima; of two meshes, all of
+// which was seen, the true one, see hausdorff.h), f_score,
 // normal_error_mean (rad, between oriented normals at the measured samples; only if normals are
 // known). Throws scan::Error (input) for nothing measured, (computation)
 // if no part of the truth was seen.
@@ -68,11 +69,17 @@ std::vector<SurfaceSample> sample_truth(const TrueSurface& truth, std::size_t co
                                         std::uint64_t seed, const Bounds& plane_region = Bounds());
 
 // range_error_bias, range_error_rms, range_error_p95 (m, along the ray), ray_hit_fraction of the
-// rays that truly hit, and normalised_range_error_rms (range error over sigma; 1 is honest; only
-// with a positive sigma somewhere). Of several points on one ray the nearest counts. Throws
-// scan::Error (input) for a ray number that the truth does not have.
+// rays that truly hit, and normalised_range_error_rms and range_error_within_95
+// (stated_uncertainty.h; only with a positive sigma somewhere). Of several points on one ray the
+// nearest counts. Throws scan::Error (input) for a ray number that the truth does not have.
 std::vector<Measurement> range_error(const PointCloud& cloud_in_scanner,
                                      std::span<const std::uint32_t> ray, const ScanTruth& truth);
+
+// unsupported_area: share of the area that lies in triangles with a vertex farther from every data
+// point than `most_spacings`; `support_spacings` has each vertex' distance to the nearest one over
+// the data's spacing there. Throws scan::Error (input) for lists of different lengths.
+Measurement unsupported_area(const Mesh& mesh, std::span<const double> support_spacings,
+                             int most_spacings);
 
 // components, boundary_edges, non_manifold_edges, genus (NaN unless closed and manifold).
 std::vector<Measurement> topology(const Mesh& mesh);

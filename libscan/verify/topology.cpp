@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// The topology of a measured surface as measurements.
+// The topology of a measured surface, and what of it no data supports, as measurements.
+#include <algorithm>
 #include <limits>
+#include <string>
 
+#include "libscan/core/error.h"
 #include "libscan/verify/surface_error.h"
 
 namespace scan {
@@ -24,6 +27,30 @@ std::vector<Measurement> topology(const Mesh& mesh) {
              census.edges),
       figure("genus", genus, "all components; undefined unless closed and manifold",
              census.components)};
+}
+
+Measurement unsupported_area(const Mesh& mesh, std::span<const double> support_spacings,
+                             int most_spacings) {
+  check(mesh);
+  if (support_spacings.size() != mesh.vertices.size())
+    throw Error(Trouble::input, "unsupported area: " + std::to_string(support_spacings.size()) +
+                                    " distances to the data for " +
+                                    std::to_string(mesh.vertices.size()) + " vertices");
+  double unsupported = 0, all = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    const double area = area_vector(mesh, triangle).norm();
+    const bool is_supported = std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
+      return support_spacings[v] <= most_spacings;
+    });
+    if (!is_supported) unsupported += area;
+    all += area;
+  }
+  return {.name = "unsupported_area",
+          .value = unsupported / all,
+          .unit = "1",
+          .over = "area; supported where the nearest data are within " +
+                  std::to_string(most_spacings) + " of their spacings",
+          .count = mesh.triangles.size()};
 }
 
 }  // namespace scan

@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "libscan/align/joint_system.h"
+#include "libscan/align/joint_solver.h"
 #include "libscan/align/shared_noise.h"
 #include "libscan/core/random.h"
 
@@ -216,6 +216,83 @@ TEST(JointCovariances, AreTheSandwichOfCurvatureAndScatter) {
   const Matrix6 expected = share * units * inverse * scatter * inverse * units;
   EXPECT_LT((*covariances[1] - expected).norm(), 1e-7 * expected.norm());
   EXPECT_EQ(*covariances[0], Matrix6::Zero());
+}
+
+// Scans 1 and 2 in a row, the noise between them shared by places and ten times stronger: what
+// holds scan 1 is its couple with the anchor alone. So its covariance is that of this couple, times
+// a number.
+TEST(JointCovariances, OfAChainAddUpFromTheAnchor) {
+  RandomStream random(6, 0, 0);
+  const std::vector<JointForm> forms = {random_form(1, 0, random), random_form(2, 1, random)};
+  std::vector<JointDetail> details(2);
+  Matrix6 scatter = Matrix6::Zero();
+  for (std::int64_t place = 0; place < 2000; ++place) {
+    const Vector6 near = random_row(random);
+    details[0].pulls.push_back({{place, 0, 0}, near});
+    scatter += near * near.transpose();
+  }
+  Vector6 shared = Vector6::Zero();
+  for (std::int64_t place = 2000; place < 4000; ++place) {
+    if (place % 20 == 0) shared = 10 * random_row(random);
+    details[1].pulls.push_back({{place, 0, 0}, shared});
+  }
+  for (std::size_t k = 0; k < 2; ++k) details[k].curvature = forms[k].a;
+  const auto covariances = joint_covariances(forms, details, frame_of(3), JointBasis(18, 0));
+  const Matrix6 inverse = forms[0].a.inverse(), link = inverse * scatter * inverse;
+  const double times = covariances[1]->trace() / link.trace();
+  EXPECT_GE(times, 1);
+  EXPECT_LT((*covariances[1] - times * link).norm(), 1e-7 * times * link.norm());
+}
+
+// With a motion of two scans together withheld: by Lagrange's equations, whose inverse's first
+// block answers pulls with steps.
+TEST(WithholdingSolver, SandwichesWhatIsNotWithheld) {
+  const Ring r = ring();
+  std::vector<JointDetail> details(4);
+  for (std::size_t k = 0; k < 4; ++k) {
+    RandomStream random(8, 0, k);
+    details[k].curvature = r.forms[k].a;
+    for (std::int64_t place = 0; place < 20; ++place)
+      details[k].pulls.push_back({{place, std::int64_t(k), 0}, random_row(random)});
+  }
+  JointBasis weak = JointBasis::Zero(24, 1);
+  weak(9, 0) = 0.6, weak(20, 0) = 0.8;
+  const JointFrame frame = frame_of(4);
+  const JointSystem system(r.forms, frame);
+  Eigen::MatrixXd saddle = Eigen::MatrixXd::Zero(19, 19);
+  saddle.topLeftCorner<18, 18>() = r.a;
+  saddle.topRightCorner<18, 1>() = weak.bottomRows<18>();
+  saddle.bottomLeftCorner<1, 18>() = weak.bottomRows<18>().transpose();
+  const Eigen::MatrixXd reply = saddle.inverse().topLeftCorner<18, 18>();
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(18, 18);
+  const std::vector<double> ones(4, 1);
+  for (const JointEntry& entry : system.scatter(system.pulls_by_place(details, ones)))
+    scatter(entry.row(), entry.col()) += entry.value();
+  const Eigen::MatrixXd expected = reply * scatter * reply;
+  const JointMatrix sparse = scatter.sparseView();
+  const WithholdingSolver solver(JointMatrix(r.a.sparseView()), system.reduced(weak));
+  const std::vector<Matrix6> blocks = solver.sandwich_blocks(sparse);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    EXPECT_LT((blocks[std::size_t(k)] - expected.block<6, 6>(6 * k, 6 * k)).norm(),
+              1e-7 * expected.norm());
+}
+
+// A row that sways as a whole does not move; one whose last scan alone moves does, by x^T A x.
+TEST(RelativeSteps, AreWhatMovesBetweenScans) {
+  RandomStream random(7, 0, 0);
+  const std::vector<JointForm> forms = {random_form(2, 1, random), random_form(3, 2, random)};
+  const Vector6 x = random_row(random);
+  for (const RelativeStep& step : relative_steps(forms, frame_of(4), std::vector<Vector6>(4, x)))
+    EXPECT_EQ(step.square + step.rotation_rad + step.translation, 0);
+  std::vector<Vector6> last(4, Vector6::Zero());
+  last[3] = x;
+  const auto steps = relative_steps(forms, frame_of(4), last);
+  EXPECT_EQ(steps[1].square, 0);
+  for (const std::size_t i : {2u, 3u}) {
+    EXPECT_DOUBLE_EQ(steps[i].square, x.dot(forms[1].a * x));
+    EXPECT_DOUBLE_EQ(steps[i].rotation_rad, x.head<3>().norm());
+    EXPECT_DOUBLE_EQ(steps[i].translation, x.tail<3>().norm());
+  }
 }
 
 }  // namespace

@@ -1,16 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// Point-to-mesh distances, which every surface error rests on, beside CGAL's AABB tree: a torus of
-// 1e4, 1e5 and 1e6 triangles, asked at 100,000 places near its surface (1e-3 of its size off, as a
-// good scan lies) and in the box around it, in random order.
+// Point-to-mesh distances, which every surface error rests on, beside CGAL's AABB tree and Open3D's
+// ray-casting scene (single precision, Embree's tree): a torus of 1e4, 1e5 and 1e6 triangles, asked
+// at 100,000 places near its surface (1e-3 of its size off, as a good scan lies) and in the box
+// around it, in random order.
 //
 // One thread, one process, the rivals in turn, medians of the rounds; `one` asks by closest(),
-// `all` by closest_of_each(). The largest difference of the distances stands beside. Argument:
-// rounds (5 if none).
+// `all` by closest_of_each(). The largest difference of the distances from CGAL's stands beside,
+// Open3D's last. Argument: rounds (5 if none).
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Simple_cartesian.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <chrono>
@@ -20,6 +22,7 @@
 #include "libscan/core/parallel.h"
 #include "libscan/core/random.h"
 #include "libscan/search/closest_point.h"
+#include "tests/benchmarks/open3d_scene.h"
 #include "tests/core/meshes.h"
 
 namespace scan {
@@ -86,11 +89,13 @@ Triangles triangles_of(const Mesh& mesh) {
 struct Rivals {
   const MeshSearch& own;
   const CgalTree& cgal;
+  const std::optional<Open3dScene>& open3d;
 };
 
 void compare(const char* where, std::size_t triangles, const Rivals& rivals, const Points& queries,
              int rounds) {
-  std::vector<double> one_s, all_s, cgal_s;
+  std::vector<double> one_s, all_s, cgal_s, open3d_s;
+  std::vector<float> open3d(queries.size(), std::numeric_limits<float>::quiet_NaN());
   std::vector<double> one(queries.size()), cgal(queries.size());
   std::vector<ClosestPoint> all;
   for (int round = 0; round < rounds; ++round) {
@@ -105,15 +110,22 @@ void compare(const char* where, std::size_t triangles, const Rivals& rivals, con
         cgal[i] = std::sqrt(rivals.cgal.squared_distance(x));
       }
     }));
+    open3d_s.push_back(seconds_of([&] {
+      if (rivals.open3d) open3d = rivals.open3d->distances_m(queries);
+    }));
   }
-  double difference = 0;
-  for (std::size_t i = 0; i < queries.size(); ++i)
+  double difference = 0, of_open3d = 0;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
     difference =
         std::max({difference, std::abs(one[i] - cgal[i]), std::abs(all[i].distance_m - cgal[i])});
+    of_open3d = std::max(of_open3d, std::abs(double{open3d[i]} - cgal[i]));
+  }
   const double each = 1e6 / static_cast<double>(queries.size());
-  std::printf("%9zu  %-8s %8.3f %8.3f %8.3f   %6.2f %6.2f   %.1e\n", triangles, where,
-              median(one_s) * each, median(all_s) * each, median(cgal_s) * each,
-              median(cgal_s) / median(one_s), median(cgal_s) / median(all_s), difference);
+  std::printf("%9zu  %-8s %8.3f %8.3f %8.3f %8.3f   %6.2f %6.2f %6.2f   %.1e %.1e\n", triangles,
+              where, median(one_s) * each, median(all_s) * each, median(cgal_s) * each,
+              median(open3d_s) * each, median(cgal_s) / median(one_s),
+              median(cgal_s) / median(all_s), median(open3d_s) / median(all_s), difference,
+              of_open3d);
 }
 
 void compare_mesh(std::uint32_t around, std::uint32_t across, int rounds) {
@@ -122,7 +134,8 @@ void compare_mesh(std::uint32_t around, std::uint32_t across, int rounds) {
   const MeshSearch own(mesh);
   CgalTree cgal(triangles.begin(), triangles.end());
   cgal.accelerate_distance_queries();
-  const Rivals rivals{own, cgal};
+  const std::optional<Open3dScene> open3d = Open3dScene::of(mesh);
+  const Rivals rivals{own, cgal, open3d};
   compare("near", mesh.triangles.size(), rivals, shuffled(places_near(mesh)), rounds);
   compare("in box", mesh.triangles.size(), rivals, places_in_box(mesh), rounds);
 }
@@ -133,8 +146,10 @@ void compare_mesh(std::uint32_t around, std::uint32_t across, int rounds) {
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 5;
   const scan::ThreadLimit one_thread(1);
-  std::printf("microseconds a query; CGAL's time over ours\n");
-  std::printf("triangles  places        one      all     CGAL      one    all   difference, m\n");
+  const tbb::global_control one_for_open3d(tbb::global_control::max_allowed_parallelism, 1);
+  std::printf("microseconds a query; CGAL's time over one and all, Open3D's over all\n");
+  std::printf(
+      "triangles  places        one      all     CGAL   Open3D      one    all Open3D   off, m\n");
   for (const auto& [around, across] :
        {std::pair(100u, 50u), std::pair(330u, 150u), std::pair(1000u, 500u)})
     scan::compare_mesh(around, across, rounds);

@@ -50,6 +50,11 @@ std::vector<Method> all_methods() {
                       const auto method = static_cast<ReconstructMethod>(i);
                       return reconstruct(in.cloud, in.viewpoints, {.method = method}).surface;
                     }});
+  for (const auto method : {ReconstructMethod::ssd, ReconstructMethod::rbf})
+    list.push_back(
+        {std::string(name_of(method)) + "-sharp", [method](const auto& in) {
+           return reconstruct(in.cloud, in.viewpoints, {.method = method, .sharp = true}).surface;
+         }});
 #ifdef LIBSCAN_WITH_CGAL
   list.push_back({"cgal-poisson", [](const auto& in) { return cgal_poisson(in.cloud); }});
   list.push_back({"cgal-front", [](const auto& in) { return advancing_front(in.cloud.points); }});

@@ -10,7 +10,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/reconstruct/reconstruct.h"
-#include "tests/reconstruct/shapes.h"
+#include "tests/reconstruct/solids.h"
 
 namespace scan {
 namespace {
@@ -73,6 +73,73 @@ PointCloud without_normals(PointCloud cloud) {
   return cloud;
 }
 
+template <class Keep>
+PointCloud part_of(const PointCloud& cloud, Keep keep) {
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i)
+    if (keep(cloud.points[i], cloud.normals[i])) kept.push_back(i);
+  return subset(cloud, kept);
+}
+
+// Every point twice, facing both ways.
+PointCloud contradictory(PointCloud cloud) {
+  const PointCloud once = cloud;
+  for (auto& n : cloud.normals) n = -n;
+  append(cloud, once);
+  return cloud;
+}
+
+double from_sphere(const Eigen::Vector3d& x) {
+  return std::abs(x.norm() - 1);
+}
+
+// The sphere, a million times as dense at its north pole as at its south pole.
+PointCloud uneven_sphere() {
+  RandomStream random(8, 0, 0);
+  return part_of(sphere_cloud(40'000), [&](const Eigen::Vector3d& x, const Eigen::Vector3d&) {
+    return random.uniform() < std::pow(1e6, (x[2] - 1) / 2);
+  });
+}
+
+// A ball of radius 1 m squeezed to 4 cm across, one cell of SSD at the depth given below; samples
+// even on the ball.
+constexpr double needle_width = 0.04;
+
+PointCloud needle() {
+  PointCloud cloud = sphere_cloud(2000);
+  const Eigen::Vector3d size(1, needle_width, needle_width);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.points[i] = cloud.points[i].cwiseProduct(size);
+    cloud.normals[i] = cloud.normals[i].cwiseQuotient(size).normalized();
+  }
+  return cloud;
+}
+
+// To first order, from the ellipsoid's equation.
+double from_needle(const Eigen::Vector3d& x) {
+  const Eigen::Vector3d size(1, needle_width, needle_width);
+  const Eigen::Vector3d q = x.cwiseQuotient(size), gradient = q.cwiseQuotient(size) / q.norm();
+  return std::abs(q.norm() - 1) / gradient.norm();
+}
+
+// A lattice on a cube's faces, one spacing short of the edges, which may be rounded by as much: its
+// middle lines lie on corners of cells at every depth.
+PointCloud lattice() {
+  PointCloud cloud;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-0.5, 0.5})
+      for (int i = 1; i < 16; ++i)
+        for (int j = 1; j < 16; ++j) {
+          Eigen::Vector3d x;
+          x[axis] = side;
+          x[(axis + 1) % 3] = i / 16.0 - 0.5;
+          x[(axis + 2) % 3] = j / 16.0 - 0.5;
+          cloud.points.push_back(x);
+          cloud.normals.push_back(2 * side * Eigen::Vector3d::Unit(axis));
+        }
+  return cloud;
+}
+
 // Samples of the torus lie 0.083 apart: surfaces within a third of that are right.
 std::vector<HardCase> hard_cases() {
   constexpr double near = 0.083 / 3;
@@ -96,6 +163,24 @@ std::vector<HardCase> hard_cases() {
       {"two sheets", two_sheets(), Answer::either,
        [](const Eigen::Vector3d& x) { return std::min(std::abs(x[2]), std::abs(x[2] - 0.04)); },
        0.03},
+      {"one scan",
+       part_of(torus, [](const auto& x,
+                         const auto& n) { return n.dot(Eigen::Vector3d(0, 0, 8) - x) > 0; }),
+       Answer::surface, from_torus, near},
+      {"disc",
+       part_of(plane_cloud(0, 1),
+               [](const auto& x, const auto&) {
+                 return (x - Eigen::Vector3d(0.5, 0.5, 0)).norm() < 0.5;
+               }),
+       Answer::either, from_plane, 0.01},
+      {"half-sphere",
+       part_of(sphere_cloud(4000), [](const auto& x, const auto&) { return x[2] > 0; }),
+       Answer::surface, from_sphere, 0.056 / 3},
+      {"density ratio 1e6", uneven_sphere(), Answer::surface, from_sphere, 0.05},
+      {"needle", needle(), Answer::surface, from_needle, needle_width / 2},
+      {"points on cell corners", lattice(), Answer::surface,
+       [](const auto& x) { return std::abs(from_cube(x)); }, 1.0 / 16},
+      {"contradictory normals", contradictory(torus), Answer::either, from_torus, near},
       {"collinear", line_cloud(), Answer::error, {}, 0},
       {"identical", one_place, Answer::error, {}, 0},
       {"three points", subset(torus, std::vector<std::uint32_t>{1, 2, 3}), Answer::error, {}, 0},

@@ -59,16 +59,42 @@ TEST(LocalSmoothing, ChoosesByRegion) {
   }
   const std::vector<double> length = smoothing.lengths();
   for (std::size_t i = 0; i < length.size(); ++i) {
-    // Regions are 0.07 wide; sums reach two of them, mixed lengths one more.
-    if (samples.points[i][0] < 0.5 - 0.21) {
+    // Regions are 0.07 wide, one lies across the middle; sums reach three of them, mixed lengths
+    // one more.
+    if (samples.points[i][0] < 0.5 - 0.35) {
       EXPECT_NEAR(length[i], 0.08, 1e-12);
     }
-    if (samples.points[i][0] > 0.5 + 0.21) {
+    if (samples.points[i][0] > 0.5 + 0.35) {
       EXPECT_NEAR(length[i], 0.02, 1e-12);
     }
     EXPECT_GE(length[i], 0.02 - 1e-12);
     EXPECT_LE(length[i], 0.08 + 1e-12);
   }
+}
+
+// What a region's own samples say by chance does not decide over a length that spans many regions:
+// one stripe (regions are 0.07 wide) that a trial makes worse, as much as its two neighbours gain,
+// keeps the old length if the trial is short and takes the new one if it is long.
+TEST(LocalSmoothing, WeighsALongTrialOverItsReach) {
+  const Samples samples = unit_square(100, 1e-3);
+  const auto length_in_stripe = [&](double first, double second) {
+    LocalSmoothing smoothing(samples);
+    smoothing.judge(first, std::vector<double>(samples.points.size(), 1.0));
+    std::vector<double> residuals;
+    for (const auto& u : samples.points)
+      residuals.push_back(u[0] > 0.4949 && u[0] < 0.5656 ? 1.6 : 0.5);
+    smoothing.judge(second, residuals);
+    double sum = 0, count = 0;
+    const std::vector<double> lengths = smoothing.lengths();
+    for (std::size_t i = 0; i < lengths.size(); ++i)
+      if (samples.points[i][0] > 0.52 && samples.points[i][0] < 0.54) {
+        sum += lengths[i];
+        ++count;
+      }
+    return sum / count;
+  };
+  EXPECT_GT(length_in_stripe(0.02, 0.01), 0.012);
+  EXPECT_NEAR(length_in_stripe(0.4, 0.2), 0.2, 1e-9);
 }
 
 TEST(LocalSmoothing, TellsHowManySamplesFaredBetter) {

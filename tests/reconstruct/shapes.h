@@ -39,6 +39,23 @@ inline PointCloud torus_cloud(std::size_t count, double major_m = 1, double mino
   return cloud;
 }
 
+// Exact samples of the unit sphere with bumps along its radius: 1 + height_m sin(k x) sin(k y)
+// sin(k z), x on the unit sphere, with the normals of that surface.
+inline PointCloud bumpy_cloud(std::size_t count, double height_m, double k,
+                              std::uint64_t seed = 1) {
+  PointCloud cloud = sphere_cloud(count, 1, seed);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d x = cloud.normals[i];
+    const Eigen::Array3d s = (k * x.array()).sin(), c = (k * x.array()).cos();
+    const Eigen::Vector3d slope =
+        height_m * k * Eigen::Vector3d(c[0] * s[1] * s[2], s[0] * c[1] * s[2], s[0] * s[1] * c[2]);
+    const double radius = 1 + height_m * s.prod();
+    cloud.points[i] = radius * x;
+    cloud.normals[i] = (radius * x - (slope - slope.dot(x) * x)).normalized();
+  }
+  return cloud;
+}
+
 // Moved by sigma in each coordinate; the normals stay.
 inline PointCloud scattered(PointCloud cloud, double sigma_m, std::uint64_t seed = 3) {
   RandomStream random(seed, 0, 0);

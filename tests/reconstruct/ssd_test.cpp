@@ -158,7 +158,7 @@ TEST(Ssd, RefusesOptionsOutsideTheirLimits) {
   EXPECT_EQ(trouble_of(sphere_cloud(100), {.depth = 2}), Trouble::usage);
   EXPECT_EQ(trouble_of(sphere_cloud(100), {.depth = 13}), Trouble::usage);
   EXPECT_EQ(trouble_of(sphere_cloud(100), {.sigma_m = -1}), Trouble::usage);
-  EXPECT_EQ(trouble_of(sphere_cloud(100), {.relative_residual = 0}), Trouble::usage);
+  EXPECT_EQ(trouble_of(sphere_cloud(100), {.relative_residual = -1e-3}), Trouble::usage);
 }
 
 TEST(Ssd, LeavesOutAndCountsBadPoints) {

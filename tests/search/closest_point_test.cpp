@@ -233,6 +233,25 @@ TEST(MeshSearch, AgreesWithBruteForceFarFromZero) {
   expect_brute_force(tilted, on_mesh);
 }
 
+// Above a corner of a flat grid up to six triangles are equally near, and their boxes are flat,
+// too: at a height that no float has, they seem farther than what is found. From near and from far
+// away.
+TEST(MeshSearch, PassesByNothingThatRoundingMovesAway) {
+  const Mesh mesh = doubled_plane(6);
+  for (const double height : {1.0 / 3, 0.7, -0.1, 1e-3}) {
+    Mesh raised = mesh;
+    for (auto& vertex : raised.vertices) vertex.z() += height;
+    const auto first = static_cast<std::uint32_t>(raised.vertices.size());
+    for (const double x : {0.0, 1.0, 2.0}) raised.vertices.push_back({x, x * x, -9});
+    raised.triangles.push_back({first, first + 1, first + 2});  // takes the origin off the plane
+    Points queries;
+    for (const auto& vertex : mesh.vertices)
+      for (const double above : {1e-9, 2e-7, 5e-7, 1e4, 3e6})
+        queries.push_back(vertex + Eigen::Vector3d(0, 0, height + above));
+    expect_brute_force(raised, queries);
+  }
+}
+
 TEST(MeshSearch, TakesTheLowestOfEquallyNearTriangles) {
   Mesh plane = doubled_plane(12);
   Points queries;

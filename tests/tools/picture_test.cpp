@@ -17,10 +17,10 @@ struct Ramp {
 };
 
 // Seen from the front; the shading of a face that looks at the viewer is 1.
-TEST(SixViews, ColourEachPlaceByItsOwnValue) {
+TEST(Portrait, ColourEachPlaceByItsOwnValue) {
   const Ramp ramp;
   constexpr int size_px = 100;
-  const View front = six_views(ramp.mesh, ramp.values, 1, size_px).front();
+  const View front = Portrait(ramp.mesh, ramp.values, 1).six_views(size_px).front();
   const double pixel_m = 1.08 / size_px;
   for (const int row : {15, 50, 85})
     for (int column = 6; column < 94; column += 8) {
@@ -33,9 +33,9 @@ TEST(SixViews, ColourEachPlaceByItsOwnValue) {
     }
 }
 
-TEST(SixViews, LeaveTheBackgroundWhite) {
+TEST(Portrait, LeaveTheBackgroundWhite) {
   const Ramp ramp;
-  const View front = six_views(ramp.mesh, ramp.values, 1, 100).front();
+  const View front = Portrait(ramp.mesh, ramp.values, 1).six_views(100).front();
   EXPECT_EQ(front.image(0, 0), (Colour{255, 255, 255}));
 }
 

@@ -53,7 +53,8 @@ TEST(Tradeoff, AdvisesTheCheapestSettingsWithinTheTolerance) {
   EXPECT_LT(fine.at("error_m"), coarse.at("error_m"));
   EXPECT_TRUE(json.at("advice").at("meets"));
   double shares = 0;
-  for (const auto& source : json.at("sources")) shares += source.at("share").get<double>();
+  for (const auto& source : json.at("cases")[0].at("sources"))
+    shares += source.at("share").get<double>();
   EXPECT_GE(shares, 1 - 1e-9);  // more if a source that is spared makes the error larger
   EXPECT_TRUE(std::filesystem::exists(folder / "out/tradeoff.html"));
   EXPECT_NE(slurp(folder / "out/tradeoff.html").find("<svg"), std::string::npos);
@@ -65,6 +66,51 @@ TEST(Tradeoff, AdvisesTheCheapestSettingsWithinTheTolerance) {
   const Outcome again = tradeoff(folder, depths, {"--tolerance", "1um", "--resume"});
   EXPECT_EQ(again.exit_code, failed) << again.err;
   EXPECT_EQ(nlohmann::json::parse(again.out).at("runs")[1].at("error_m"), fine.at("error_m"));
+}
+
+// The case decides what is advised: clean scans are best at the fine depth, and the few photons of
+// the dark case leave errors that are mostly noise.
+TEST(Tradeoff, AdvisesEachCaseForItself) {
+  const Folder folder;
+  const Outcome outcome = tradeoff(folder, R"({
+      "vary": [{"key": "reconstruct/depth", "values": [3, 5]}, {"key": "threads", "values": [1]}],
+      "cases": [{"name": "clean", "set": {"effects": "none"}},
+                {"name": "dark", "set": {"scanner/phase_camera/electrons_at_1m": 1500}}],
+      "seeds": 1, "seconds": "reconstruct"})");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  ASSERT_EQ(json.at("runs").size(), 4u);
+  ASSERT_EQ(json.at("cases").size(), 2u);
+  EXPECT_EQ(json.at("cases")[0].at("advice").at("settings").at("reconstruct/depth"), 5);
+  EXPECT_EQ(json.at("runs")[0].at("seconds"),
+            json.at("runs")[0].at("stages").at("reconstruct").at("seconds"));
+  EXPECT_GT(json.at("runs")[0].at("stages").at("align").at("peak_mib"), 10);
+  const auto share = [&](std::size_t in, const std::string& name) {
+    for (const auto& source : json.at("cases")[in].at("sources"))
+      if (source.at("source") == name) return source.at("share").get<double>();
+    return -1.0;
+  };
+  EXPECT_EQ(share(0, "noise"), 0);  // nothing to spare: the same run
+  EXPECT_EQ(share(0, "miscalibration"), 0);
+  EXPECT_GT(share(1, "noise"), 0.1);  // 1,500 electrons leave 8 mm of noise in a reading
+  const std::string csv = slurp(folder / "out/tradeoff.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_NE(csv.find("dark,5,1,"), std::string::npos) << csv;
+  const std::string svg = slurp(folder / "out/tradeoff.svg");
+  EXPECT_EQ(svg.rfind("<svg xmlns='http://www.w3.org/2000/svg'", 0), 0u);
+  EXPECT_NE(svg.find(">clean<"), std::string::npos);
+  EXPECT_NE(svg.find(">dark<"), std::string::npos);
+}
+
+// Before the first run, and without leaving a folder that asks for --resume.
+TEST(Tradeoff, NamesAMistakeInItsLastChoiceAtOnce) {
+  const Folder folder;
+  const Outcome outcome =
+      tradeoff(folder, R"({"vary": [{"key": "reconstruct/depth", "values": [3, 5, 99]}]})");
+  EXPECT_EQ(outcome.exit_code, input);
+  EXPECT_NE(outcome.err.find("99"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("run 1"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/runs"));
 }
 
 TEST(Tradeoff, NamesWhatIsWrongWithItsRecipe) {

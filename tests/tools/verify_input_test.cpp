@@ -97,6 +97,79 @@ TEST(VerifyInput, ABrokenMeshIsRefusedByName) {
   }
 }
 
+TEST(VerifyInput, EachFigureStandsWithItsDefinition) {
+  const Folder folder;
+  const Judged same = judged(folder, cube_off(1, 0));
+  for (const auto& m : same.json.at("measurements"))
+    EXPECT_NE(m.at("definition"), "") << m.at("name");
+  const Outcome text = run_scan(
+      {"verify", (folder / "measured.off").string(), "--truth", (folder / "truth.off").string()});
+  EXPECT_NE(text.out.find("mean of the distances |d| of the measured surface from the true one"),
+            std::string::npos)
+      << text.out;
+}
+
+// A second cube, half inside the first: the walls of both overlap and cross.
+TEST(VerifyInput, SelfIntersectionsAreCounted) {
+#ifdef LIBSCAN_WITH_CGAL
+  const Folder folder;
+  EXPECT_EQ(judged(folder, cube_off(1, 0)).figure("self_intersections"), 0);
+  const std::string one = cube_off(1, 0), other = cube_off(1, 0.5);
+  const auto corners = [](const std::string& off) {
+    return off.substr(off.find('\n', 4) + 1, off.find("3 0 2 3") - off.find('\n', 4) - 1);
+  };
+  std::string faces = one.substr(one.find("3 0 2 3")), moved;
+  std::istringstream lines(faces);
+  for (int three, a, b, c; lines >> three >> a >> b >> c;)
+    moved += "3 " + std::to_string(a + 8) + " " + std::to_string(b + 8) + " " +
+             std::to_string(c + 8) + "\n";
+  const Judged both =
+      judged(folder, "OFF\n16 24 0\n" + corners(one) + corners(other) + faces + moved);
+  EXPECT_GT(both.figure("self_intersections"), 0);
+#else
+  GTEST_SKIP() << "built with LIBSCAN_WITH_CGAL=OFF";
+#endif
+}
+
+TEST(VerifyInput, ARunFolderCutShortIsNamedWithItsStage) {
+  const Folder folder;
+  const auto verified = [&] { return run_scan({"verify", folder.path().string()}); };
+  EXPECT_EQ(verified().exit_code, input);
+  EXPECT_TRUE(says(verified(), "holds no recipe.json")) << verified().err;
+  std::filesystem::copy_file(LIBSCAN_SOURCE_DIR "/datasets/recipes/pavilion-lidar.json",
+                             folder / "recipe.json");
+  EXPECT_TRUE(says(verified(), "ended before simulate was done")) << verified().err;
+  std::filesystem::create_directory(folder / "truth");
+  spill(folder / "truth" / "surface.json", "{\"shapes\": [");
+  EXPECT_EQ(verified().exit_code, input) << verified().err;
+}
+
+TEST(VerifyInput, ATruthWithHolesIsSaidToHaveThem) {
+  const Folder folder;
+  std::string open = cube_off(1, 0);
+  open.replace(open.find("8 12 0"), 6, "8 11 0");
+  open.erase(open.find("3 1 7 5"));
+  spill(folder / "measured.off", cube_off(1, 0));
+  spill(folder / "open.off", open);
+  const Outcome outcome = run_scan({"verify", (folder / "measured.off").string(), "--truth",
+                                    (folder / "open.off").string(), "--json"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(says(outcome, "has holes (3 boundary edges)")) << outcome.err;
+  EXPECT_EQ(outcome.out.find("volume_error"), std::string::npos);
+  EXPECT_FALSE(says(judged(folder, cube_off(1, 0)).outcome, "holes"));
+}
+
+// Of points without coordinates the cloud keeps none; a surface of none is refused.
+TEST(VerifyInput, ACloudOfNothingIsRefused) {
+  const Folder folder;
+  spill(folder / "cloud.xyz", "nan nan nan\nnan 0 0\n");
+  spill(folder / "truth.off", cube_off(1, 0));
+  const Outcome outcome = run_scan(
+      {"verify", (folder / "cloud.xyz").string(), "--truth", (folder / "truth.off").string()});
+  EXPECT_EQ(outcome.exit_code, input);
+  EXPECT_TRUE(says(outcome, "cloud.xyz")) << outcome.err;
+}
+
 TEST(VerifyInput, ALimitOnWhatWasNotMeasuredIsAnError) {
   const Folder folder;
   const auto limits = (folder / "limits.json").string();

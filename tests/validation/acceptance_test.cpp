@@ -117,5 +117,41 @@ TEST(Acceptance, ALongBaselineLengthensEveryLength) {
   EXPECT_NEAR(longer.size_m - ideal.size_m, 1e-3 * (bench().ball_diameter_m + ideal.size_m), 1e-9);
 }
 
+// Of the face of a plane at the distance z_m, all that the sweep sees.
+Points scanned_plane(const LaserLine& device, double z_m, const EffectSet& effects) {
+  const Scene scene{.objects = {plane_at(z_m)}, .materials = {grey}};
+  return acquire(render(device, RayCaster(scene), Pose::Identity(), {}, effects).frames)
+      .cloud.points;
+}
+
+// The real light plane leaves the laser at a larger angle, x = B - z tan(a + t), and is decoded as
+// x = B - z' tan(a): 1 / z' = 1 / z - (tan(a + t) - tan(a)) / B, whatever x. The step between two
+// such planes is what the sheet shows. The stripe's own bias, some 5 um here
+// (laser_line_range_test), is the same with and without the tilt but for its change over the
+// stripe's move, a tenth.
+TEST(Acceptance, ATiltedLightPlaneShowsInTheStep) {
+  LaserLine device;
+  device.camera = {
+      .width_px = 160, .height_px = 20, .fx_px = 400, .fy_px = 400, .cx_px = 79.5, .cy_px = 9.5};
+  device.beam_radius_m = 4e-4;
+  device.steps = 11;
+  device.step_m = 2e-3;
+  device.plane_turn_rad = 2e-3;
+  const double near_m = 0.175, far_m = 0.19;
+  const auto step_error_m = [&](const EffectSet& effects) {
+    const Step step{scanned_plane(device, far_m, effects), scanned_plane(device, near_m, effects)};
+    return value(step_errors(std::vector{step}, far_m - near_m), "step_error");
+  };
+  const auto seen_m = [&](double z_m) {
+    const double turn = std::tan(device.triangulation_rad + device.plane_turn_rad) -
+                        std::tan(device.triangulation_rad);
+    return 1 / (1 / z_m - turn / device.baseline_m);
+  };
+  const double predicted_m = (seen_m(far_m) - seen_m(near_m)) - (far_m - near_m);
+  EXPECT_GT(predicted_m, 1e-4);
+  const double tilted_m = step_error_m({Effect::footprint, Effect::miscalibration});
+  EXPECT_NEAR(tilted_m - step_error_m(no_effects), predicted_m, 1e-6);
+}
+
 }  // namespace
 }  // namespace scan::synth

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // With noise: each point's own sigma must say how far it is from the truth.
 #include "tests/validation/scanner_range.h"
+#include "tests/validation/stated_scanners.h"
+#include "tests/verify/figure.h"
 
 namespace scan::synth {
 namespace {
@@ -123,6 +125,22 @@ TEST(StereoPairSigma, IsThatOfTheErrors) {
   const double windows = errors.count / 25;
   EXPECT_NEAR(errors.mean_square, 1, 5 * std::sqrt(2 / windows));
   EXPECT_NEAR(errors.mean, 0, 5 / std::sqrt(windows));
+}
+
+// Between 93 and 97 % of the points lie inside their own 95 % interval, over four seeds of every
+// kind of scanner before a plane and a ball in its usual light. Some 6,000 points or more, so the
+// share is known to sqrt(0.95 * 0.05 / 6000) = 0.3 %; those of stereo share windows of 7 x 7 px, so
+// 1400 windows, 0.6 %. Not the stereo pair's ball: its windows are some degrees of the ball wide
+// and so biased, which its sigma does not know (uncertainty_study: 84 %).
+TEST(ScannerSigma, HoldsItsInterval) {
+  for (const StatedScanner& scanner : stated_scanners()) {
+    if (scanner.light != 1 || (scanner.device == "stereo" && scanner.target == "ball")) continue;
+    double share = 0;
+    for (const std::uint64_t seed : {1, 2, 3, 4})
+      share += figure(stated_figures(scanner, seed), "range_error_within_95") / 4;
+    EXPECT_GT(share, 0.93) << scanner.device << ", " << scanner.target;
+    EXPECT_LT(share, 0.97) << scanner.device << ", " << scanner.target;
+  }
 }
 
 }  // namespace

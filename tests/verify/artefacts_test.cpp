@@ -142,6 +142,38 @@ TEST(Artefacts, OfACylinder) {
   EXPECT_LT(figure(figures, "cylindricity_95"), 1e-12);
 }
 
+// Of three balls two stand true and the third is 20 um too far along x: the pair on x shows all of
+// it, the other at 45 degrees 20 um / sqrt(2).
+TEST(Artefacts, LengthErrorIsThatOfTheWorstPair) {
+  const Eigen::Vector3d a(0, 0, 1), b(0.5, 0.5, 1), c(0.5, 0, 1), off(2e-5, 0, 0);
+  const std::vector<PlacedBall> balls{{ideal_ball(a, 0.015), a},
+                                      {ideal_ball(b, 0.015), b},
+                                      {ideal_ball(Eigen::Vector3d(c + off), 0.015), c}};
+  EXPECT_NEAR(figure(length_errors(balls), "length_error"), 2e-5, 1e-12);
+  EXPECT_NEAR(figure(length_errors(std::span(balls).first(2)), "length_error"), 0, 1e-13);
+  EXPECT_THROW(length_errors(std::span(balls).first(1)), Error);
+}
+
+// Ranges that are 100 ppm long, and a constant 5 mm, which is not relative.
+TEST(Artefacts, RelativeRangeErrorShowsScaleAndNoOffset) {
+  std::vector<PlacedPlate> plates;
+  for (const double range_m : {1.0, 2.0, 5.0})
+    plates.push_back({plate(0, 1.0001 * range_m + 5e-3), {0, 0, range_m}});
+  EXPECT_NEAR(figure(relative_range_errors(plates, {0, 0, 2}), "relative_range_error"), 4e-4,
+              1e-12);
+  EXPECT_THROW(relative_range_errors({}, {0, 0, 1}), Error);
+}
+
+TEST(Artefacts, RepeatabilityIsTheStandardDeviation) {
+  const Measurement size{.name = "probing_size", .value = 1, .unit = "m"};
+  const std::vector<double> values{1e-6, 3e-6, 5e-6};
+  const Measurement spread = repeatability(size, values);
+  EXPECT_EQ(spread.name, "probing_size_repeatability");
+  EXPECT_NEAR(spread.value, 2e-6, 1e-18);
+  EXPECT_EQ(spread.count, 3u);
+  EXPECT_THROW(repeatability(size, std::span(values).first(1)), Error);
+}
+
 TEST(Artefacts, RefuseNothing) {
   EXPECT_THROW(probing_errors({}, 0.03), Error);
   EXPECT_THROW(spacing_errors({}, 0.3), Error);

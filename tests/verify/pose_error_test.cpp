@@ -164,6 +164,24 @@ TEST(Summarise, TakesLargestAndMean) {
   EXPECT_DOUBLE_EQ(figure(figures, "pose_error_rms_mean"), 3);
 }
 
+// Of two scans, each with the same points in the world, the second is off by a turn of 0.2 about z.
+// The gauge takes half of it: each is turned by 0.1 about the points' centroid, the origin. A
+// target at distance 3 from the axis moves by 2 * 3 sin(0.05), one on it by 0.
+TEST(TargetRegistrationError, OfASharedTurnIsTheChord) {
+  Vector6 turn = Vector6::Zero();
+  turn(2) = 0.2;
+  const std::vector<Pose> truth(2, Pose::Identity());
+  const std::vector<Points> points(2, octahedron());
+  const Points targets{{3, 0, 7}, {0, 0, 1}};
+  const Vector6 other = (Vector6() << 1, 2, 3, 4, 5, 6).finished();
+  const std::vector<Pose> estimated{exp(other), exp(other) * exp(turn)};
+  const auto figures = target_registration_error(estimated, truth, points, targets);
+  const double chord = 6 * std::sin(0.05);
+  EXPECT_NEAR(figure(figures, "target_registration_error_max"), chord, 1e-13);
+  EXPECT_NEAR(figure(figures, "target_registration_error"), chord / std::sqrt(2), 1e-13);
+  EXPECT_THROW(target_registration_error(estimated, truth, points, {}), Error);
+}
+
 // Two poses; the second is off by a turn of 0.1 about its own z and by 0.2 along its x, so that its
 // motion to the first is off by just these, wherever the world frame lies.
 TEST(RelativePoseErrors, AreThoseOfTheMotionBetweenNeighbours) {

@@ -52,6 +52,20 @@ TEST(RangeError, TakesTheFirstReturnOfARay) {
   EXPECT_NEAR(figure(figures, "ray_hit_fraction"), 1.0 / 3, 1e-15);
 }
 
+// The device measures along (0, 0.6, 0.8), not along the ray: the error is three of its sigmas
+// there, whatever sigma along the ray would make of it.
+TEST(RangeError, IsNormalisedAlongTheCovariancesAxis) {
+  PointCloud cloud;
+  const Eigen::Vector3d line(0, 0.6, 0.8);
+  cloud.points = {Eigen::Vector3d(0, 0, 2) + 0.03 * line};
+  cloud.sigma_m = {0.02};
+  cloud.covariances = {1e-4 * line * line.transpose()};
+  const auto figures = range_error(cloud, std::vector<std::uint32_t>{0}, truth());
+  EXPECT_NEAR(figure(figures, "range_error_rms"), 0.024, 1e-15);
+  EXPECT_NEAR(figure(figures, "normalised_range_error_rms"), 3, 1e-12);
+  EXPECT_EQ(figure(figures, "range_error_within_95"), 0);
+}
+
 TEST(RangeError, WithoutSigmaSaysNothingOfIt) {
   PointCloud cloud;
   cloud.points = {{0, 0, 2}};

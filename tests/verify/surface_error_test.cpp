@@ -10,6 +10,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "libscan/core/random.h"
 #include "tests/core/meshes.h"
 #include "tests/verify/figure.h"
 
@@ -147,6 +148,35 @@ TEST(SurfaceError, OfAFineTorusIsTheSagitta) {
   EXPECT_LE(figure(figures, "accuracy_max"), sagitta);
   EXPECT_GT(figure(figures, "accuracy_max"), sagitta / 3);
   EXPECT_LE(figure(figures, "completeness_max"), sagitta);
+}
+
+// Points on a sphere that is 0.3 % too large, far from the origin, against the analytic one.
+TEST(CloudError, OfAScaledSphereIsItsGrowth) {
+  const Eigen::Vector3d centre(10, -20, 5);
+  const TrueSurface sphere{
+      {PlacedShape{make_pose(Eigen::Matrix3d::Identity(), centre), SphereShape{2}}}, {}};
+  PointCloud cloud;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    RandomStream random(1, 0, i);
+    const double x = random.normal(), y = random.normal(), z = random.normal();
+    cloud.points.push_back(centre + 2.006 * Eigen::Vector3d(x, y, z).normalized());
+  }
+  // coordinates of 22 m round at 4e-15 m, which is 1e-12 of 6 mm
+  for (const char* name : {"accuracy_mean", "accuracy_rms", "accuracy_median", "accuracy_p95",
+                           "accuracy_p997", "accuracy_max"})
+    EXPECT_NEAR(figure(cloud_error(cloud, sphere, {.samples = 1000}), name), 6e-3, 2e-14) << name;
+}
+
+// The corner that turns farthest out, in closed form (hausdorff_test.cpp has the derivation).
+TEST(SurfaceError, OfATurnedBoxHasItsHausdorffDistance) {
+  const double t = 0.1;
+  const Eigen::Translation3d middle(0.5, 0.5, 0.5);
+  const Pose turn(middle * Eigen::AngleAxisd(t, Eigen::Vector3d::UnitZ()) * middle.inverse());
+  const auto figures = surface_error(transformed(turn, cube(1)), {{}, {cube(1)}}, {.samples = 500});
+  const double expected = std::sqrt(0.5) * std::sin(std::numbers::pi / 4 + t) - 0.5;
+  EXPECT_NEAR(figure(figures, "hausdorff"), expected, 1e-12 * expected);
+  EXPECT_LE(measurement(figures, "hausdorff").interval->high, 1.01 * expected);
+  EXPECT_LT(figure(figures, "accuracy_max"), expected);
 }
 
 TEST(SurfaceError, RefusesNothing) {

@@ -2,37 +2,73 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/html.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "libscan/core/error.h"
+#include "tools/console.h"
+#include "tools/report/embedded.h"
 #include "tools/version.h"
 
 namespace scan {
 namespace {
 
-const char* const style = R"(
-:root { color-scheme: light; }
-body { font: 16px/1.5 system-ui, sans-serif; color: #1b1b1b; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
-h1 { margin-bottom: 0; } h2 { margin-top: 2.2rem; border-bottom: 1px solid #ccc; }
-.verdict { display: inline-block; padding: .3rem 1rem; border-radius: .3rem; font-weight: 700; color: #fff; }
-.pass { background: #1a6b3a; } .fail { background: #a11a2b; } .none { background: #555; }
-table { border-collapse: collapse; width: 100%; margin: .6rem 0; }
-th, td { text-align: left; padding: .3rem .6rem; border-bottom: 1px solid #ddd; vertical-align: top; }
-td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-tr.reason td { font-size: .85rem; color: #444; padding-left: 1.6rem; }
-.views { display: grid; grid-template-columns: repeat(3, 1fr); gap: .6rem; }
-figure { margin: 0; } figcaption { text-align: center; font-size: .9rem; } img { width: 100%; border: 1px solid #ddd; }
-pre { background: #f5f5f5; padding: 1rem; overflow-x: auto; font-size: .85rem; }
-@media print { body { margin: 0; max-width: none; } h2 { break-after: avoid; } tr, figure { break-inside: avoid; } }
-)";
+constexpr std::string_view style_name = "style.css";
+
+const EmbeddedFile& asset_file(std::string_view name) {
+  const auto& files = report_assets();
+  const auto file = std::find_if(files.begin(), files.end(),
+                                 [&](const EmbeddedFile& one) { return one.name == name; });
+  if (file == files.end())
+    throw Error(Trouble::computation, "report: " + std::string(name) + " is not built in");
+  return *file;
+}
+
+// As policies name it (CSP Level 3, 2.3.1).
+std::string hash_source(std::string_view name) {
+  const std::string_view digits = asset_file(name).sha256;
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < digits.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16));
+  return "'sha256-" + base64(bytes) + "'";
+}
+
+std::string policy(const std::vector<std::string_view>& scripts) {
+  std::string text =
+      "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; "
+      "style-src " +
+      hash_source(style_name);
+  if (!scripts.empty()) text += "; script-src";
+  for (const std::string_view script : scripts) text += " " + hash_source(script);
+  return text;
+}
 
 }  // namespace
 
-std::string page_head(const std::string& title) {
+std::string page_head(const std::string& title, const std::vector<std::string_view>& scripts) {
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-         "<title>" +
-         escaped(title) + "</title><style>" + style + "</style></head><body><h1>" + escaped(title) +
-         "</h1><p>libscan " + version_text() + "</p>";
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
+         policy(scripts) +
+         "\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+         "<meta name=\"color-scheme\" content=\"light dark\">"
+         "<meta name=\"generator\" content=\"libscan " +
+         version_text() + "\"><title>" + escaped(title) + "</title><style>" +
+         std::string(asset(style_name)) + "</style></head><body>\n";
+}
+
+std::string_view asset(std::string_view name) {
+  return asset_file(name).text;
+}
+
+std::string inline_script(std::string_view name) {
+  return "<script>" + std::string(asset(name)) + "</script>\n";
+}
+
+std::string data_script(const std::string& id, const nlohmann::ordered_json& json) {
+  std::string safe;  // "</script" and "<!--" would end or change the element
+  for (const char c : json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace))
+    safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return "<script type=\"application/json\" id=\"" + id + "\">" + safe + "</script>\n";
 }
 
 std::string escaped(const std::string& text) {
@@ -46,15 +82,18 @@ std::string escaped(const std::string& text) {
       safe += "&amp;";
     else if (c == '"')
       safe += "&quot;";
+    else if (c == '\'')
+      safe += "&#39;";
     else
       safe += c;
   }
   return safe;
 }
 
-std::string base64(const std::string& bytes) {
+std::string base64(std::string_view bytes) {
   static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
+  text.reserve(bytes.size() / 3 * 4 + 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     const auto at = [&](std::size_t k) {
       return i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u;
@@ -70,9 +109,49 @@ std::string cell(const std::string& text, bool number) {
   return std::string(number ? "<td class=\"number\">" : "<td>") + escaped(text) + "</td>";
 }
 
+std::string page_value(double value, const std::string& unit) {
+  std::string text = readable_value(value, unit);
+  if (text.ends_with(" um")) text.replace(text.size() - 2, 2, "µm");
+  if (text.ends_with(" deg")) text.replace(text.size() - 4, 4, "°");
+  return text;
+}
+
+std::string exact(const nlohmann::ordered_json& value, const std::string& unit) {
+  if (!value.is_number()) return "unknown";
+  return "<data value=\"" + value.dump() + "\">" + escaped(page_value(value.get<double>(), unit)) +
+         "</data>";
+}
+
+std::string signed_exact(const nlohmann::ordered_json& value, const std::string& unit) {
+  return (value.is_number() && value.get<double>() > 0 ? "+" : "") + exact(value, unit);
+}
+
+std::string exact_cell(const nlohmann::ordered_json& value, const std::string& unit) {
+  return "<td class=\"number\">" + exact(value, unit) + "</td>";
+}
+
+std::string section(const std::string& id, const std::string& title, const std::string& content) {
+  return "<section id=\"" + id + "\" aria-labelledby=\"" + id + "-title\"><h2 id=\"" + id +
+         "-title\">" + escaped(title) + "</h2>\n" + content + "</section>\n";
+}
+
+std::string table(const std::string& caption, const std::vector<std::string>& headings,
+                  const std::string& rows) {
+  std::string head;
+  for (const std::string& heading : headings) {
+    const bool number = heading.starts_with('#');
+    head += std::string("<th scope=\"col\"") + (number ? " class=\"number\">" : ">") +
+            escaped(heading.substr(number ? 1 : 0)) + "</th>";
+  }
+  return "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"" + escaped(caption) +
+         "\"><table><caption><span>" + escaped(caption) + "</span></caption><thead><tr>" + head +
+         "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
+}
+
 std::string details(const std::string& title, const nlohmann::ordered_json& json) {
-  return "<details><summary>" + escaped(title) + "</summary><pre>" + escaped(json.dump(2)) +
-         "</pre></details>";
+  return "<details><summary>" + escaped(title) + "</summary><pre>" +
+         escaped(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) +
+         "</pre></details>\n";
 }
 
 }  // namespace scan

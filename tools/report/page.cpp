@@ -3,139 +3,187 @@
 #include "tools/report/page.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
 
-#include "libscan/core/units.h"
-#include "tools/console.h"
+#include "tools/report/deviation_map.h"
+#include "tools/report/figure_tables.h"
 #include "tools/report/html.h"
+#include "tools/report/scene_data.h"
 #include "tools/report/svg.h"
+#include "tools/report/tradeoff_page.h"
+#include "tools/report/viewer.h"
 
 namespace scan {
 namespace {
 
 using nlohmann::ordered_json;
 
-std::string number_of(const ordered_json& value, const std::string& unit) {
-  return value.is_number() ? readable_value(value.get<double>(), unit) : "unknown";
-}
+struct Part {
+  std::string id, title, content;
+};
 
-// What sampling leaves open of a figure.
-std::string interval_of(const ordered_json& measurement, const std::string& unit) {
-  if (!measurement.contains("interval") || !measurement.at("interval").is_array()) return "";
-  const auto& ends = measurement.at("interval");
-  return number_of(ends.at(0), unit) + " to " + number_of(ends.at(1), unit);
-}
-
-std::string banner(const ordered_json& verdict) {
-  if (verdict.is_null()) return "<p class=\"verdict none\">not verified</p>";
-  const bool pass = verdict.value("pass", false);
-  return std::string("<p class=\"verdict ") + (pass ? "pass\">PASS" : "fail\">FAIL") + "</p>";
-}
-
-std::string measurement_table(const ordered_json& verdict) {
-  std::string html =
-      "<h2>Measurements</h2><table><tr><th>figure</th><th class=\"number\">value</th>"
-      "<th class=\"number\">95 % interval</th><th class=\"number\">limit</th><th>verdict</th>"
-      "<th>over</th></tr>";
-  for (const auto& m : verdict.at("measurements")) {
-    const std::string unit = m.value("unit", "");
-    const bool limited = m.contains("limit") && m.at("limit").is_number();
-    html +=
-        "<tr>" + cell(m.value("name", "")) + cell(number_of(m.at("value"), unit), true) +
-        cell(interval_of(m, unit), true) +
-        cell(limited ? m.value("relation", "") + " " + number_of(m.at("limit"), unit) : "", true) +
-        cell(limited ? (m.value("pass", false) ? "pass" : "FAIL") : "") +
-        cell(m.value("over", "") + " (" + std::to_string(m.value("count", 0ul)) + ")") + "</tr>";
-    if (limited)
-      html += "<tr class=\"reason\"><td colspan=\"6\">Why this limit: " +
-              escaped(m.value("reason", "")) + "</td></tr>";
+// "4 of 5 limits are met", or why nothing was judged.
+std::string verdict_sentence(const ordered_json& twin) {
+  std::size_t limits = 0, met = 0;
+  for (const auto& m : twin.at("measurements")) {
+    if (!m.contains("limit") || !m.at("limit").is_number()) continue;
+    ++limits;
+    met += m.value("pass", false);
   }
-  return html + "</table>";
+  if (twin.at("verdict") == "not verified") return "The run was not verified.";
+  if (limits == 0) return "The recipe sets no limit: figures without a judgement.";
+  return std::to_string(met) + " of " + std::to_string(limits) + " limits are met.";
 }
 
-std::string deviation_section(const Report& report) {
-  const double limit_m = deviation_limit_m(report.deviations_m);
-  std::string html =
-      "<h2>Deviation from the truth</h2><p>Signed distance of each surface vertex: blue lies "
-      "inside "
-      "the true surface, red outside. The scale holds 99 % of the vertices.</p>" +
-      deviation_legend(limit_m) + "<div class=\"views\">";
-  for (const View& view : six_views(report.surface, report.deviations_m, limit_m, 300))
-    html += "<figure><img alt=\"surface seen from " + view.name +
-            ", coloured by deviation\" src=\"data:image/png;base64," +
-            base64(png_bytes(view.image)) + "\"><figcaption>" + escaped(view.name) +
-            "</figcaption></figure>";
-  return html + "</div>" + deviation_histogram(report.deviations_m, limit_m);
+// "laser line, 20 scans, 206320 points; surface of 199182 triangles by ssd"
+std::string what_was_done(const ordered_json& twin) {
+  std::string text;
+  const ordered_json& recipe = twin.at("recipe");
+  if (recipe.contains("scanner") && recipe.at("scanner").is_object() &&
+      !recipe.at("scanner").empty())
+    text = recipe.at("scanner").begin().key();
+  std::replace(text.begin(), text.end(), '_', ' ');
+  std::size_t points = 0;
+  for (const auto& scan : twin.at("scans")) points += scan.at("points").get<std::size_t>();
+  text += (text.empty() ? "" : ", ") + std::to_string(twin.at("scans").size()) + " scans, " +
+          std::to_string(points) + " points";
+  const ordered_json& surface = twin.at("reconstruction");
+  if (surface.is_object() && surface.contains("triangles"))
+    text += "; surface of " + surface.at("triangles").dump() + " triangles by " +
+            surface.value("method", "an unknown method");
+  return text;
 }
 
-std::string scan_table(const Report& report) {
-  std::string html =
-      "<h2>Scans</h2><table><tr><th>scan</th><th class=\"number\">rays</th>"
-      "<th class=\"number\">points</th><th>rays without a point</th></tr>";
-  for (const auto& scan : report.simulation) {
-    std::string misses;
-    for (const auto& [reason, count] : scan.at("misses").items())
-      misses +=
-          (misses.empty() ? "" : ", ") + reason + ": " + std::to_string(count.get<std::size_t>());
-    html += "<tr>" + cell(scan.value("file", "")) +
-            cell(std::to_string(scan.value("rays", 0ul)), true) +
-            cell(std::to_string(scan.value("points", 0ul)), true) + cell(misses) + "</tr>";
-  }
-  return html + "</table>";
+std::string header(const ordered_json& twin) {
+  const std::string word = twin.at("verdict").get<std::string>();
+  const std::string kind = word == "not verified" ? "none" : word;
+  std::string shown = word;
+  if (kind != "none")
+    std::transform(shown.begin(), shown.end(), shown.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  const ordered_json& made = twin.at("provenance");
+  return "<a class=\"skip\" href=\"#verdict\">Skip to the verdict</a>\n<header>"
+         "<p class=\"verdict " +
+         kind + "\" role=\"status\">" + shown + "</p><h1>" +
+         escaped(twin.at("title").get<std::string>()) + "</h1><p>" + verdict_sentence(twin) +
+         " <span class=\"quiet\">" + escaped(what_was_done(twin)) + ". Seed " +
+         made.at("seed").dump() + ", libscan " + escaped(made.at("version").get<std::string>()) +
+         "</span></p></header>\n";
 }
 
-std::string pose_table(const ordered_json& alignment) {
-  std::string html =
-      "<h2>Alignment</h2><table><tr><th>scan</th><th>stop</th><th class=\"number\">rms</th>"
-      "<th class=\"number\">inliers</th><th>directions that the data leave free</th></tr>";
-  for (const auto& scan : alignment.at("scans")) {
-    std::string weak;
-    for (const auto& direction : scan.at("weak_directions"))
-      weak += (weak.empty() ? "" : "; ") + direction.get<std::string>();
-    html += "<tr>" + cell(scan.value("file", "")) + cell(scan.value("stop", "")) +
-            cell(number_of(scan.at("rms_m"), "m"), true) +
-            cell(number_of(scan.at("inlier_fraction_of_source"), "1"), true) + cell(weak) + "</tr>";
-  }
-  return html + "</table>";
+std::string contents(const std::vector<Part>& parts) {
+  std::string html = "<nav aria-label=\"Contents\"><ol>";
+  for (const Part& part : parts)
+    html += "<li><a href=\"#" + part.id + "\">" + escaped(part.title) + "</a></li>";
+  return html + "</ol></nav>\n";
 }
 
-std::string effect_table(const ordered_json& effects) {
+std::string missing_note(const ordered_json& missing) {
+  if (missing.empty()) return "";
   std::string html =
-      "<h2>Simulated effects</h2><table><tr><th>effect</th><th>decision</th>"
-      "<th class=\"number\">error if left out</th><th>reason</th></tr>";
-  for (const auto& effect : effects)
-    html += "<tr>" + cell(effect.value("effect", "")) + cell(effect.value("decision", "")) +
-            cell(number_of(effect.at("bound_m"), "m"), true) + cell(effect.value("reason", "")) +
-            "</tr>";
-  return html + "</table>";
+      "<div class=\"note\" role=\"note\"><strong>This run is not whole.</strong><ul>";
+  for (const auto& sentence : missing)
+    html += "<li>" + escaped(sentence.get<std::string>()) + "</li>";
+  return html + "</ul></div>\n";
 }
 
-std::string seconds_table(const ordered_json& seconds) {
+std::string verdict_part(const ordered_json& twin) {
+  const std::string limits = limit_table(twin.at("measurements"));
+  if (limits.empty()) return "<p>" + verdict_sentence(twin) + "</p>";
+  return "<p class=\"quiet\">A figure passes where its value keeps the limit. The interval holds "
+         "the figure of the whole surface with 95 % confidence; where the limit lies in it, "
+         "another sample of the surface may be judged otherwise.</p>" +
+         limits;
+}
+
+std::string histogram_part(const ordered_json& twin) {
+  const ordered_json& deviation = twin.at("deviation");
+  if (deviation.is_null()) return "";
+  const ordered_json& h = deviation.at("histogram");
+  std::vector<HistogramLimit> limits;
+  for (const auto& m : twin.at("measurements"))
+    if (m.value("name", "").starts_with("accuracy_") && m.at("limit").is_number())
+      limits.push_back({"limit of " + m.value("name", ""), m.at("limit").get<double>()});
+  return histogram_plot({.limit_m = h.at("limit_m").get<double>(),
+                         .counts = h.at("counts").get<std::vector<std::size_t>>(),
+                         .below = h.at("below").get<std::size_t>(),
+                         .above = h.at("above").get<std::size_t>()},
+                        limits) +
+         statistics_table(deviation.at("statistics"));
+}
+
+std::string provenance_part(const ordered_json& twin) {
+  const ordered_json& made = twin.at("provenance");
+  ordered_json plain = made;
+  for (const auto& [library, version] : made.at("libraries").items()) plain[library] = version;
+  plain["recipe"] = "fingerprint " + made.at("recipe").get<std::string>();
+  std::string html = property_list(plain);
+  if (!twin.at("reconstruction").is_null())
+    html += "<h3>Reconstruction</h3>" + property_list(twin.at("reconstruction"));
+  return html + details("The recipe as run, all defaults filled in", twin.at("recipe"));
+}
+
+// The parts that are drawn rather than listed.
+struct Drawn {
+  std::string map, view;
+};
+
+std::vector<Part> parts_of(const ordered_json& twin, const Drawn& drawn) {
+  std::vector<Part> parts = {{"verdict", "Verdict", verdict_part(twin)},
+                             {"map", "Deviation map", drawn.map},
+                             {"view", "3D view", drawn.view},
+                             {"histogram", "Histogram", histogram_part(twin)},
+                             {"figures", "All figures",
+                              figure_table("Every figure of the verdict, with what it was "
+                                           "taken over.",
+                                           twin.at("measurements"))}};
+  if (!twin.at("alignment").is_null())
+    parts.push_back(
+        {"poses", "Poses", pose_table(twin.at("alignment")) + pair_table(twin.at("alignment"))});
+  parts.push_back({"scans", "Scans", scan_table(twin.at("scans"))});
+  if (twin.at("effects").is_array())
+    parts.push_back({"effects", "Simulated effects", effect_table(twin.at("effects"))});
+  if (twin.at("artefacts").is_object())
+    parts.push_back({"artefacts", "Scanner's data sheet",
+                     figure_table("Errors on calibrated bodies, after VDI/VDE 2634 and ISO "
+                                  "10360-13, not certified.",
+                                  twin.at("artefacts").at("measurements"))});
+  if (twin.at("tradeoff").is_object())
+    parts.push_back({"tradeoff", "Accuracy against time", tradeoff_parts(twin.at("tradeoff"))});
+  parts.push_back({"cost", "What it cost", cost_table(twin.at("cost"))});
+  parts.push_back({"provenance", "Provenance", provenance_part(twin)});
+  if (!drawn.view.empty())
+    parts.push_back({"licences", "Licences",
+                     "<details><summary>three.js, which draws the 3D "
+                     "view</summary><pre>" +
+                         escaped(std::string(asset("three-licence.txt"))) + "</pre></details>\n"});
+  std::erase_if(parts, [](const Part& part) { return part.content.empty(); });
+  return parts;
+}
+
+std::string page_with(const ordered_json& twin, const Drawn& drawn) {
+  const std::vector<Part> parts = parts_of(twin, drawn);
   std::string html =
-      "\n<table id=\"seconds\"><tr><th>stage</th><th class=\"number\">seconds</th></tr>";
-  for (const auto& [stage, value] : seconds.items()) {
-    if (!value.is_number()) continue;  // what each effect cost, see the effects
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f", value.get<double>());
-    html += "<tr>" + cell(stage) + cell(text, true) + "</tr>";
-  }
-  return "<h2>What it cost</h2>" + html + "</table>\n";
+      page_head(twin.at("title").get<std::string>() + " - libscan report",
+                drawn.view.empty() ? std::vector<std::string_view>{} : viewer_scripts());
+  html += header(twin) + contents(parts) + missing_note(twin.at("missing")) + "<main>\n";
+  for (const Part& part : parts) html += section(part.id, part.title, part.content);
+  return html + "</main></body></html>\n";
 }
 
 }  // namespace
 
-std::string report_page(const Report& report) {
-  std::string html = page_head(report.title) + banner(report.verdict);
-  if (!report.verdict.is_null()) html += measurement_table(report.verdict);
-  if (!report.deviations_m.empty()) html += deviation_section(report);
-  if (!report.simulation.is_null()) html += scan_table(report);
-  if (!report.alignment.is_null()) html += pose_table(report.alignment);
-  if (!report.effects.is_null()) html += effect_table(report.effects);
-  if (!report.seconds.is_null()) html += seconds_table(report.seconds);
-  html += "<h2>Details</h2>";
-  if (!report.reconstruction.is_null()) html += details("Reconstruction", report.reconstruction);
-  html += details("Recipe as run, all defaults filled in", report.recipe);
-  return html + "</body></html>\n";
+std::string report_page(const RunRecord& record, const ordered_json& twin) {
+  Drawn drawn{deviation_map(record, twin), ""};
+  if (record.surface.empty() && record.world_from_scan.empty()) return page_with(twin, drawn);
+  for (std::size_t points = most_page_points; points > 1000; points -= points / 4) {
+    drawn.view = viewer(record, twin, points);
+    std::string page = page_with(twin, drawn);
+    if (page.size() < most_page_bytes) return page;
+  }
+  drawn.view.clear();
+  return page_with(twin, drawn);
 }
 
 }  // namespace scan

@@ -3,29 +3,18 @@
 // The report: one self-contained HTML page that opens from disk without network.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <vector>
 
-#include "tools/report/picture.h"
+#include "tools/report/record.h"
 
 namespace scan {
 
-// Everything the page shows; JSON parts have the keys of the run folder's files and may be null.
-struct Report {
-  std::string title;
-  nlohmann::ordered_json recipe;
-  nlohmann::ordered_json effects;
-  nlohmann::ordered_json simulation;  // per scan: rays, points, misses
-  nlohmann::ordered_json alignment;
-  nlohmann::ordered_json reconstruction;
-  nlohmann::ordered_json verdict;
-  nlohmann::ordered_json seconds;  // the only part that differs between equal runs
-  Mesh surface;
-  std::vector<double> deviations_m;  // one per vertex of the surface
-};
+// The page stays below this: what is shown in 3D is thinned until it does.
+inline constexpr std::size_t most_page_bytes = 2'000'000;
 
-// Timings stand in one element, <table id="seconds">, on a line of its own.
-std::string report_page(const Report& report);
+// `twin` is the record's report_twin(), whose numbers the page shows. Times, machine and threads
+// stand in one element, <table id="seconds">, on a line of its own.
+std::string report_page(const RunRecord& record, const nlohmann::ordered_json& twin);
 
 }  // namespace scan

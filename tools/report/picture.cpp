@@ -33,6 +33,7 @@ const std::vector<Side>& sides() {
 constexpr Colour background = {255, 255, 255};
 constexpr Colour clay = {205, 190, 170};
 constexpr int rays_per_side = 2;  // of a pixel, against jagged edges
+constexpr double margin = 1.08;
 
 // Weights of the triangle's corners at a point of its plane.
 Eigen::Vector3d barycentric(const Mesh& mesh, const Triangle& t, const Eigen::Vector3d& x) {
@@ -67,23 +68,22 @@ struct Painter {
   }
 };
 
-View paint(const Painter& painter, const Side& side, const Bounds& box, double pixel_m,
-           int size_px) {
-  View view{side.name, Image<Colour>(size_px, size_px)};
-  const double distance = box.diagonal().norm();
+// Fills the view's image, all else of which is set.
+void paint(const Painter& painter, double distance, View& view) {
   const double sub = 1.0 / rays_per_side;
+  const int width = view.image.width, height = view.image.height;
   parallel_for(
-      static_cast<std::size_t>(size_px),
+      static_cast<std::size_t>(height),
       [&](std::size_t row) {
-        for (int column = 0; column < size_px; ++column) {
+        for (int column = 0; column < width; ++column) {
           Eigen::Vector3d sum = Eigen::Vector3d::Zero();
           for (int k = 0; k < rays_per_side * rays_per_side; ++k) {
             const int across = k % rays_per_side, down = k / rays_per_side;
-            const double u = column + (across + 0.5) * sub - size_px / 2.0;
-            const double v = static_cast<double>(row) + (down + 0.5) * sub - size_px / 2.0;
-            const Eigen::Vector3d origin = box.center() + distance * side.towards_viewer +
-                                           pixel_m * (u * side.right - v * side.up);
-            sum += painter.shade(origin, -side.towards_viewer);
+            const double u = column + (across + 0.5) * sub - width / 2.0;
+            const double v = static_cast<double>(row) + (down + 0.5) * sub - height / 2.0;
+            const Eigen::Vector3d origin = view.centre + distance * view.towards_viewer +
+                                           view.pixel_m * (u * view.right - v * view.up);
+            sum += painter.shade(origin, -view.towards_viewer);
           }
           for (int channel = 0; channel < 3; ++channel)
             view.image(column, static_cast<int>(row))[channel] =
@@ -91,23 +91,83 @@ View paint(const Painter& painter, const Side& side, const Bounds& box, double p
         }
       },
       8);
-  return view;
+}
+
+synth::Scene scene_of(const Mesh& mesh) {
+  synth::Scene scene;
+  scene.materials.push_back({.name = "surface"});
+  scene.objects.push_back({"surface", Pose::Identity(), mesh, 0});
+  return scene;
+}
+
+// Half of what a box measures along a direction.
+double half_extent(const Bounds& box, const Eigen::Vector3d& direction) {
+  return 0.5 * box.sizes().dot(direction.cwiseAbs());
 }
 
 }  // namespace
 
-std::vector<View> six_views(const Mesh& mesh, const std::vector<double>& values, double limit,
-                            int size_px) {
-  synth::Scene scene;
-  scene.materials.push_back({.name = "surface"});
-  scene.objects.push_back({"surface", Pose::Identity(), mesh, 0});
-  const synth::RayCaster caster(scene);
-  const Bounds box = bounds_of(mesh.vertices);
-  const double pixel_m = 1.08 * box.sizes().maxCoeff() / size_px;
-  const Painter painter{mesh, values, limit > 0 ? limit : 1, caster};
+Eigen::Vector2d View::place(const Eigen::Vector3d& point) const {
+  const Eigen::Vector3d from_centre = point - centre;
+  return {image.width / 2.0 + from_centre.dot(right) / pixel_m,
+          image.height / 2.0 - from_centre.dot(up) / pixel_m};
+}
+
+struct Portrait::Parts {
+  synth::RayCaster caster;
+  Painter painter;
+  Bounds box;
+
+  Parts(const Mesh& mesh, const std::vector<double>& values, double limit)
+      : caster(scene_of(mesh)),
+        painter{mesh, values, limit > 0 ? limit : 1, caster},
+        box(bounds_of(mesh.vertices)) {}
+};
+
+Portrait::Portrait(const Mesh& mesh, const std::vector<double>& values, double limit)
+    : parts_(std::make_unique<Parts>(mesh, values, limit)) {}
+Portrait::~Portrait() = default;
+
+std::vector<View> Portrait::six_views(int size_px) const {
+  const Bounds& box = parts_->box;
   std::vector<View> views;
-  for (const Side& side : sides()) views.push_back(paint(painter, side, box, pixel_m, size_px));
+  for (const Side& side : sides()) {
+    View view{side.name,
+              Image<Colour>(size_px, size_px),
+              box.center(),
+              side.towards_viewer,
+              side.right,
+              side.up,
+              margin * box.sizes().maxCoeff() / size_px};
+    paint(parts_->painter, box.diagonal().norm(), view);
+    views.push_back(std::move(view));
+  }
   return views;
+}
+
+View Portrait::oblique_view(int width_px, int height_px) const {
+  const Bounds& box = parts_->box;
+  const Eigen::Vector3d towards = Eigen::Vector3d(0.55, -0.75, 0.45).normalized();
+  const Eigen::Vector3d right = Eigen::Vector3d::UnitZ().cross(towards).normalized();
+  const Eigen::Vector3d up = towards.cross(right);
+  const double pixel_m =
+      2 * margin * std::max(half_extent(box, right) / width_px, half_extent(box, up) / height_px);
+  View view{"front, right and above",
+            Image<Colour>(width_px, height_px),
+            box.center(),
+            towards,
+            right,
+            up,
+            pixel_m};
+  paint(parts_->painter, box.diagonal().norm(), view);
+  return view;
+}
+
+bool Portrait::is_seen(const View& view, const Eigen::Vector3d& point, double tolerance_m) const {
+  const double distance = parts_->box.diagonal().norm();
+  const auto hit =
+      parts_->caster.closest(point + distance * view.towards_viewer, -view.towards_viewer);
+  return hit && (hit->point - point).dot(view.towards_viewer) < tolerance_m;
 }
 
 double deviation_limit_m(std::vector<double> sizes) {

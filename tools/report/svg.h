@@ -6,13 +6,25 @@
 #include <string>
 #include <vector>
 
+#include "tools/report/deviation.h"
+
 namespace scan {
 
-// Histogram of signed deviations in metres over [-limit_m, limit_m], coloured like the surface,
-// with the share of values outside the limits named; axes in a readable unit.
-std::string deviation_histogram(const std::vector<double>& deviations_m, double limit_m);
+// A line across the histogram at a value and at its negative.
+struct HistogramLimit {
+  std::string name;
+  double value_m = 0;
+};
+
+// Signed deviations, coloured like the surface, with the share beyond the scale named and the
+// limits that lie within it; axis in a readable unit.
+std::string histogram_plot(const DeviationHistogram& histogram,
+                           const std::vector<HistogramLimit>& limits);
 
 // The legend of the diverging scale, horizontal.
-std::string deviation_legend(double limit_m);
+std::string legend_plot(double limit_m);
+
+// How much of a limit a value uses: a bar whose mark is the limit.
+std::string limit_bar(double share_of_limit, bool pass);
 
 }  // namespace scan

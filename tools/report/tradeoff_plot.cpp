@@ -13,7 +13,7 @@
 namespace scan {
 namespace {
 
-constexpr double width = 760, height = 420, left = 90, right = 24, top = 20, bottom = 56;
+constexpr double page_width = 760, wide_height = 420, narrow_height = 300, legend_height = 26;
 
 // Distinct for the colour-blind too (Okabe and Ito 2008).
 constexpr std::array<const char*, 7> colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
@@ -34,18 +34,20 @@ struct Axis {
   double at(double value) const {
     return from + (to - from) * std::log(value / low) / std::log(high / low);
   }
+  Axis between(double begin, double end) const { return {low, high, begin, end}; }
 };
 
-Axis axis_of(const std::vector<double>& values, double from, double to) {
+Axis axis_of(const std::vector<double>& values) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  return {*least / 1.25, *most * 1.25, from, to};
+  return {*least / 1.25, *most * 1.25, 0, 0};
 }
 
-// Multiples of the powers of ten that lie on the axis: all on a short one, else by 1, 2 and 5.
+// Multiples of the powers of ten that lie on the axis, as many as its length has room for.
 std::vector<double> ticks(const Axis& axis) {
-  const std::vector<double> digits = axis.high < 10 * axis.low
-                                         ? std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9}
-                                         : std::vector<double>{1, 2, 5};
+  const double decade_px = std::abs(axis.to - axis.from) / std::log10(axis.high / axis.low);
+  const std::vector<double> digits = decade_px > 420   ? std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8}
+                                     : decade_px > 150 ? std::vector<double>{1, 2, 5}
+                                                       : std::vector<double>{1};
   std::vector<double> places;
   for (int power = static_cast<int>(std::floor(std::log10(axis.low)));
        std::pow(10, power) <= axis.high; ++power)
@@ -55,35 +57,42 @@ std::vector<double> ticks(const Axis& axis) {
   return places;
 }
 
-std::string frame(const Axis& x, const Axis& y, const std::string& figure,
-                  const std::string& unit) {
-  std::string svg;
-  for (const double tick : ticks(x)) {
-    svg += print("<line x1='%.1f' y1='%g' x2='%.1f' y2='%g' stroke='#ddd'/>", x.at(tick), top,
-                 x.at(tick), height - bottom);
-    svg += print("<text x='%.1f' y='%g' text-anchor='middle'>%g</text>", x.at(tick),
-                 height - bottom + 18, tick);
-  }
-  for (const double tick : ticks(y)) {
-    svg += print("<line x1='%g' y1='%.1f' x2='%g' y2='%.1f' stroke='#ddd'/>", left, y.at(tick),
-                 width - right, y.at(tick));
-    svg += print("<text x='%g' y='%.1f' text-anchor='end'>%s</text>", left - 6, y.at(tick) + 4,
-                 readable_value(tick, unit).c_str());
-  }
-  svg += print("<text x='%g' y='%g' text-anchor='middle'>seconds</text>",
-               (left + width - right) / 2, height - 14);
-  return svg +
-         print("<text x='14' y='%g' text-anchor='middle' transform='rotate(-90 14 %g)'>%s</text>",
-               (top + height - bottom) / 2, (top + height - bottom) / 2, escaped(figure).c_str());
+std::string centred(double x, double y, const std::string& text) {
+  return print("<text x='%.1f' y='%.1f' text-anchor='middle'>", x, y) + escaped(text) + "</text>";
 }
 
-std::string front_line(std::vector<TradeoffMark> marks, const Axis& x, const Axis& y) {
+std::string frame(const Axis& x, const Axis& y, const TradeoffLabels& labels,
+                  const std::string& title) {
+  std::string svg;
+  for (const double tick : ticks(x)) {
+    svg += print("<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' class='grid' stroke='#ddd'/>",
+                 x.at(tick), y.to, x.at(tick), y.from);
+    svg += centred(x.at(tick), y.from + 18, print("%g", tick));
+  }
+  for (const double tick : ticks(y)) {
+    svg += print("<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' class='grid' stroke='#ddd'/>",
+                 x.from, y.at(tick), x.to, y.at(tick));
+    svg += print("<text x='%.1f' y='%.1f' text-anchor='end'>%s</text>", x.from - 6, y.at(tick) + 4,
+                 readable_value(tick, labels.unit).c_str());
+  }
+  const double middle = (y.from + y.to) / 2, turn_x = x.from - 72;
+  svg += centred((x.from + x.to) / 2, y.from + 38, labels.seconds) +
+         print("<g transform='rotate(-90 %.1f %.1f)'>", turn_x, middle) +
+         centred(turn_x, middle, labels.figure) + "</g>";
+  if (!title.empty())
+    svg += "<g font-weight='bold'>" + centred((x.from + x.to) / 2, y.to - 8, title) + "</g>";
+  return svg;
+}
+
+std::string line_through(std::vector<TradeoffMark> marks, const Axis& x, const Axis& y,
+                         const char* colour) {
   std::sort(marks.begin(), marks.end(),
             [](const TradeoffMark& a, const TradeoffMark& b) { return a.seconds < b.seconds; });
   std::string points;
   for (const TradeoffMark& mark : marks)
-    if (mark.on_front) points += print("%.1f,%.1f ", x.at(mark.seconds), y.at(mark.error));
-  return "<polyline fill='none' stroke='#888' stroke-width='1.5' points='" + points + "'/>";
+    points += print("%.1f,%.1f ", x.at(mark.seconds), y.at(mark.error));
+  return print("<polyline fill='none' stroke='%s' stroke-opacity='.45' points='", colour) + points +
+         "'/>";
 }
 
 std::string drawn(const TradeoffMark& mark, const Axis& x, const Axis& y, const char* colour) {
@@ -94,58 +103,101 @@ std::string drawn(const TradeoffMark& mark, const Axis& x, const Axis& y, const 
     svg += print("<circle cx='%.1f' cy='%.1f' r='10' fill='none' stroke='#111' stroke-width='2'/>",
                  cx, cy);
   return svg +
-         print("<circle cx='%.1f' cy='%.1f' r='5' fill='%s'><title>", cx, cy,
-               mark.on_front ? colour : "#fff") +
-         escaped(mark.label) + "</title></circle>" +
-         print("<circle cx='%.1f' cy='%.1f' r='5' fill='none' stroke='%s' stroke-width='1.5'/>", cx,
-               cy, colour);
+         print("<circle cx='%.1f' cy='%.1f' r='5' fill='%s' stroke='%s' stroke-width='1.5'><title>",
+               cx, cy, mark.on_front ? colour : "#fff", colour) +
+         escaped(mark.label) + "</title></circle>";
 }
 
-std::string legend(const std::vector<std::string>& curves) {
+// In rows below the panels.
+std::string legend(const std::vector<std::string>& curves, double top, double& bottom) {
   std::string svg;
+  double x = 90, y = top + 16;
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    const double y = top + 14 + 18 * static_cast<double>(i);
-    svg += print("<circle cx='%g' cy='%g' r='5' fill='%s'/>", width - right - 10, y - 4,
+    const double width = 30 + 7.2 * static_cast<double>(curves[i].size());
+    if (x + width > page_width) {
+      x = 90;
+      y += 20;
+    }
+    svg += print("<circle cx='%.1f' cy='%.1f' r='5' fill='%s'/>", x, y - 4,
                  colours[i % colours.size()]);
-    svg += print("<text x='%g' y='%g' text-anchor='end'>", width - right - 20, y) +
-           escaped(curves[i]) + "</text>";
+    svg += print("<text x='%.1f' y='%.1f'>", x + 10, y) + escaped(curves[i]) + "</text>";
+    x += width;
   }
+  bottom = y + legend_height - 16;
   return svg;
+}
+
+template <class Member>
+std::vector<std::string> names_of(const std::vector<TradeoffMark>& marks, Member member) {
+  std::vector<std::string> names;
+  for (const TradeoffMark& mark : marks)
+    if (std::find(names.begin(), names.end(), mark.*member) == names.end())
+      names.push_back(mark.*member);
+  return names;
+}
+
+std::string panel(const std::vector<TradeoffMark>& marks, const std::vector<std::string>& curves,
+                  const Axis& x, const Axis& y, double tolerance) {
+  std::string lines, dots;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const char* const colour = colours[i % colours.size()];
+    std::vector<TradeoffMark> of_curve;
+    for (const TradeoffMark& mark : marks)
+      if (mark.curve == curves[i]) of_curve.push_back(mark);
+    lines += line_through(of_curve, x, y, colour);
+    for (const TradeoffMark& mark : of_curve) dots += drawn(mark, x, y, colour);
+  }
+  if (tolerance > 0)
+    lines += print(
+        "<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' stroke='#a11a2b' stroke-dasharray='6 4'/>"
+        "<text x='%.1f' y='%.1f' fill='#a11a2b'>tolerance</text>",
+        x.from, y.at(tolerance), x.to, y.at(tolerance), x.from + 6, y.at(tolerance) - 5);
+  return lines + dots;
+}
+
+bool can_be_shown(const TradeoffMark& mark) {
+  return mark.seconds > 0 && mark.least_error > 0 && std::isfinite(mark.most_error);
 }
 
 }  // namespace
 
-std::string tradeoff_plot(const std::vector<TradeoffMark>& all, const std::string& figure,
-                          const std::string& unit, double tolerance) {
+std::string tradeoff_plot(const std::vector<TradeoffMark>& all, const TradeoffLabels& labels,
+                          double tolerance) {
   std::vector<TradeoffMark> marks;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(marks), can_be_shown);
   std::vector<double> seconds, errors;
-  std::vector<std::string> curves;
-  for (const TradeoffMark& mark : all) {
-    if (!(mark.seconds > 0) || !(mark.least_error > 0) || !std::isfinite(mark.most_error)) continue;
-    marks.push_back(mark);
+  for (const TradeoffMark& mark : marks) {
     seconds.push_back(mark.seconds);
     errors.insert(errors.end(), {mark.least_error, mark.most_error});
-    if (std::find(curves.begin(), curves.end(), mark.curve) == curves.end())
-      curves.push_back(mark.curve);
   }
-  if (marks.empty()) return "<p>No run gave an error to show.</p>";
   if (tolerance > 0) errors.push_back(tolerance);
-  const Axis x = axis_of(seconds, left, width - right), y = axis_of(errors, height - bottom, top);
-  std::string svg = print(
-      "<svg viewBox='0 0 %g %g' role='img' aria-label='Error against seconds' font-size='12' "
-      "font-family='sans-serif'>",
-      width, height);
-  svg += frame(x, y, figure, unit) + front_line(marks, x, y);
-  if (tolerance > 0)
-    svg += print(
-        "<line x1='%g' y1='%.1f' x2='%g' y2='%.1f' stroke='#a11a2b' stroke-dasharray='6 4'/>"
-        "<text x='%g' y='%.1f' fill='#a11a2b'>tolerance</text>",
-        left, y.at(tolerance), width - right, y.at(tolerance), left + 6, y.at(tolerance) - 5);
-  for (const TradeoffMark& mark : marks) {
-    const auto curve = std::find(curves.begin(), curves.end(), mark.curve) - curves.begin();
-    svg += drawn(mark, x, y, colours[static_cast<std::size_t>(curve) % colours.size()]);
+  const auto panels = names_of(marks, &TradeoffMark::panel);
+  const auto curves = names_of(marks, &TradeoffMark::curve);
+  const bool is_single = panels.size() < 2;
+  const double width = is_single ? page_width : page_width / 2;
+  const double height = is_single ? wide_height : narrow_height;
+  std::string svg;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const double left = static_cast<double>(i % 2) * width,
+                 top = static_cast<double>(i / 2) * height;
+    const Axis x = axis_of(seconds).between(left + 90, left + width - 20);
+    const Axis y = axis_of(errors).between(top + height - 56, top + 26);
+    std::vector<TradeoffMark> inside;
+    std::copy_if(marks.begin(), marks.end(), std::back_inserter(inside),
+                 [&](const TradeoffMark& mark) { return mark.panel == panels[i]; });
+    svg += frame(x, y, labels, panels[i]) + panel(inside, curves, x, y, tolerance);
   }
-  return svg + legend(curves) + "</svg>";
+  double bottom = 0;
+  const double below =
+      height * static_cast<double>((panels.size() + (is_single ? 0 : 1)) / (is_single ? 1 : 2));
+  svg += legend(curves, below, bottom);
+  return print(
+             "<svg class='plot' xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %g %.0f' "
+             "role='img' "
+             "aria-label='Error against seconds' font-size='12' font-family='sans-serif'>",
+             page_width, bottom) +
+         (marks.empty() ? centred(page_width / 2, 40, "No run gave an error to show.") : svg) +
+         "</svg>";
 }
 
 }  // namespace scan

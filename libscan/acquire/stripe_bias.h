@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// How far a body's form and brightness move a stripe's centre: what a stripe cannot tell by itself,
+// but those of the steps before and behind it can.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "libscan/core/raw_frames.h"
+
+namespace scan::decoding {
+
+// A place that the light plane met at this or another step, as this step's image sees it.
+struct LitPlace {
+  double offset_m = 0;  // from this step's light plane, along its normal
+  double column_px = 0;
+  double height_e = 0;  // of its own stripe
+};
+
+// The stripe lights the places with offsets p by exp(-p^2 / (2 w^2)). Let u = a p + b p^2 be the
+// columns they are seen at and 1 + g p their brightness, by the parabolas through three places.
+// With s = a w the image is exp(-u^2 / (2 s^2)) (1 + g u / a + b u^3 / (a^2 s^2)) to first order,
+// and the Gaussian that fits it best under shot noise, as the centroid, stands off by the mean of
+// that times u: s^2 (g / a + 3 b / a^2). `here` is the stripe's own place, s = width_px; 0 if two
+// places coincide.
+double stripe_shift_px(const LitPlace& here, const LitPlace& one, const LitPlace& other,
+                       double width_px);
+
+// What was found at a ray: its point in the scanner frame and its stripe; no width: nothing.
+struct LitRay {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double column_px = 0;
+  double width_px = 0;  // 1 sigma of the stripe
+  double height_e = 0;
+};
+
+// One standard deviation, in columns, of the centre of `ray` (of step * rows + row) besides its
+// noise: the shift above, by places of the same row that are seen at least four widths away. Where
+// the body is not seen that far the stripe may be cut: 0.15 widths.
+double unseen_shift_px(const StripeImages& frames, std::span<const LitRay> rays, std::size_t ray);
+
+}  // namespace scan::decoding

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "libscan/align/joint_refinement.h"
+#include "libscan/align/joint_solver.h"
+#include "libscan/align/shared_noise.h"
+
+namespace scan {
+namespace {
+
+constexpr double rounding_share = 1e-10;  // as in observability.cpp
+
+// What each scan's noise shared among places adds to its scatter (shared_noise.h), along all that
+// is not weak.
+std::vector<double> noise_shares(const PlacePulls& places, std::size_t scans,
+                                 const JointBasis& weak) {
+  std::vector<std::vector<Vector6>> pulls(scans);
+  std::vector<std::vector<Eigen::Vector3d>> at(scans);
+  for (const auto& [place, all] : places)
+    for (const auto& [scan, pull] : all) {
+      pulls[scan].push_back(pull);
+      at[scan].emplace_back(double(place[0]), double(place[1]), double(place[2]));
+    }
+  std::vector<double> shares(scans, 1);
+  for (std::size_t i = 0; i < scans; ++i) {
+    Matrix6 scatter = Matrix6::Zero();
+    const Matrix6 rest = complement_projector(weak_motions_of(i, weak));
+    for (Vector6& pull : pulls[i]) {
+      pull = (rest * pull).eval();
+      scatter += pull * pull.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scatter);
+    Vector6 roots = Vector6::Zero();
+    for (int k = 0; k < 6; ++k)
+      if (const double variance = solver.eigenvalues()[k];
+          variance > rounding_share * solver.eigenvalues()[5])
+        roots[k] = 1 / std::sqrt(variance);
+    const auto dimensions = static_cast<int>((roots.array() > 0).count());
+    if (dimensions == 0) continue;
+    const Matrix6 whitening = roots.asDiagonal() * solver.eigenvectors().transpose();
+    for (Vector6& pull : pulls[i]) pull = (whitening * pull).eval();
+    // Not below what each point errs by alone: chance must not make all ties of a scan surer.
+    shares[i] = std::max(1.0, noise_sharing(pulls[i], at[i], dimensions));
+  }
+  return shares;
+}
+
+// The scatter of the pulls, those of a couple longer by the root of what its free scans' noise is
+// shared among places: in the geometric mean, since a couple must pull both its scans alike. Else
+// what it pulls the one with and the other would no longer cancel where they move together.
+JointEntries shared_scatter(const JointSystem& system, std::span<const JointForm> forms,
+                            std::span<const JointDetail> details, const JointBasis& weak) {
+  std::vector<double> factors(forms.size(), 1);
+  const std::vector<double> shares =
+      noise_shares(system.pulls_by_place(details, factors), std::size_t(weak.rows() / 6), weak);
+  for (std::size_t k = 0; k < forms.size(); ++k) {
+    const auto& [source, target] = std::pair(forms[k].source, forms[k].target);
+    const double both = system.has(source) && system.has(target) ? 0.5 : 1;
+    factors[k] = std::sqrt(std::pow(shares[source] * shares[target], both));
+  }
+  return system.scatter(system.pulls_by_place(details, factors));
+}
+
+}  // namespace
+
+std::vector<std::optional<Matrix6>> joint_covariances(std::span<const JointForm> forms,
+                                                      std::span<const JointDetail> details,
+                                                      const JointFrame& frame,
+                                                      const JointBasis& weak) {
+  std::vector<std::optional<Matrix6>> covariances(frame.centres.size());
+  for (std::size_t i = 0; i < covariances.size(); ++i)
+    if (!frame.free[i]) covariances[i] = Matrix6::Zero();
+  const JointSystem system(forms, frame);
+  if (system.rows() == 0) return covariances;
+  const WithholdingSolver solver(matrix_of(system, system.sum_of(details)), system.reduced(weak));
+  const JointMatrix scatter = matrix_of(system, shared_scatter(system, forms, details, weak));
+  const std::vector<Matrix6> blocks = solver.sandwich_blocks(scatter);
+  Matrix6 units = Matrix6::Identity();
+  units.bottomRightCorner<3, 3>() *= frame.size_m;
+  for (std::size_t i = 0; i < covariances.size(); ++i) {
+    if (!system.has(i) || weak_motions_of(i, weak).cols() > 0) continue;
+    const Matrix6& covariance = blocks[std::size_t(system.row(i) / 6)];
+    covariances[i] = units * (0.5 * (covariance + covariance.transpose())) * units;
+  }
+  return covariances;
+}
+
+}  // namespace scan

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/align/joint_guesses.h"
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <algorithm>
+
+#include "libscan/align/joint_motion.h"
+
+namespace scan {
+namespace {
+
+// Of the diagonal; a motion that changes no couple stays.
+constexpr double damping = 1e-9;
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+// The twist of the form's source, its target held, that brings them to where the guesses have them.
+Vector6 way_of(const JointForm& form, std::span<const Pose> poses, std::span<const Pose> guesses) {
+  const Pose there = poses[form.target] * guesses[form.target].inverse() * guesses[form.source];
+  const Eigen::Translation3d centre(form.frame.centre);
+  Vector6 way = log(centre.inverse() * there * poses[form.source].inverse() * centre);
+  way.tail<3>() /= form.frame.size_m;
+  return way;
+}
+
+}  // namespace
+
+WayToGuesses way_to_guesses(std::span<const JointForm> forms, const JointFrame& frame,
+                            const JointBasis& weak, std::span<const Pose> world_from_local,
+                            std::span<const Pose> guesses, double most_m) {
+  WayToGuesses way{.twists = std::vector<Vector6>(frame.centres.size(), Vector6::Zero())};
+  if (weak.cols() == 0) return way;
+  const Sparse motions = weak.sparseView();
+  const Sparse relative = relative_twists(forms, frame) * motions;
+  Eigen::VectorXd wanted(relative.rows());
+  for (std::size_t k = 0; k < forms.size(); ++k)
+    wanted.segment<6>(6 * Eigen::Index(k)) = way_of(forms[k], world_from_local, guesses);
+  Sparse normal = relative.transpose() * relative;
+  const double least = std::max(damping * normal.diagonal().maxCoeff(), 1e-300);
+  for (Eigen::Index i = 0; i < normal.rows(); ++i) normal.coeffRef(i, i) += least;
+  const Eigen::SimplicialLDLT<Sparse> factor(normal);
+  Eigen::VectorXd along = factor.solve(relative.transpose() * wanted);
+  const Eigen::VectorXd moved = relative * along;
+  double share = 1;
+  for (std::size_t k = 0; k < forms.size(); ++k) {
+    const double length_m = moved.segment<6>(6 * Eigen::Index(k)).norm() * forms[k].frame.size_m;
+    if (length_m > most_m) share = std::min(share, most_m / length_m);
+  }
+  way.whole = share == 1;
+  const Eigen::VectorXd all = share * (motions * along);
+  for (std::size_t i = 0; i < way.twists.size(); ++i)
+    way.twists[i] = all.segment<6>(6 * Eigen::Index(i));
+  return way;
+}
+
+}  // namespace scan

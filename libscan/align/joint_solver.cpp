@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/align/joint_solver.h"
+
+#include <algorithm>
+
+#include "libscan/align/selected_inverse.h"
+#include "libscan/core/error.h"
+
+namespace scan {
+namespace {
+
+constexpr double rounding_share = 1e-10;  // as in observability.cpp
+
+// Whether each column is a motion of one scan.
+bool each_of_one_scan(const Eigen::MatrixXd& columns) {
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    Eigen::Index first = 0;
+    columns.col(k).cwiseAbs().maxCoeff(&first);
+    const double own = columns.col(k).segment<6>(first - first % 6).squaredNorm();
+    if (own < (1 - rounding_share) * columns.col(k).squaredNorm()) return false;
+  }
+  return true;
+}
+
+// I - W W^T, block by block.
+JointMatrix block_projector(const Eigen::MatrixXd& weak) {
+  JointEntries entries;
+  for (Eigen::Index row = 0; row < weak.rows(); row += 6) {
+    const auto own = weak.middleRows<6>(row);
+    const Matrix6 block = Matrix6::Identity() - own * own.transpose();
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) entries.push_back({int(row) + i, int(row) + j, block(i, j)});
+  }
+  JointMatrix projector(weak.rows(), weak.rows());
+  projector.setFromTriplets(entries.begin(), entries.end());
+  return projector;
+}
+
+}  // namespace
+
+JointMatrix matrix_of(const JointSystem& system, const JointEntries& entries) {
+  JointMatrix matrix(system.rows(), system.rows());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+JointMatrix damped(const JointMatrix& a, double share) {
+  JointMatrix sum = a;
+  const double least = 1e-3 * a.diagonal().mean();
+  for (Eigen::Index i = 0; i < a.rows(); ++i)
+    sum.coeffRef(i, i) += share * std::max(a.coeff(i, i), least);
+  return sum;
+}
+
+std::unique_ptr<JointFactor> factor_of(const JointMatrix& a) {
+  auto factor = std::make_unique<JointFactor>(a);
+  if (factor->info() != Eigen::Success)
+    throw Error(Trouble::computation, "align_scans: the joint system is singular");
+  return factor;
+}
+
+WithholdingSolver::WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak)
+    : weak_(std::move(weak)) {
+  blocks_ = weak_.cols() > 0 && each_of_one_scan(weak_);
+  if (!blocks_) {
+    held_ = damped(a, rounding_share);
+    factor_ = factor_of(held_);
+    if (weak_.cols() == 0) return;
+    reply_ = factor_->solve(weak_);
+    response_.compute(weak_.transpose() * reply_);
+    return;
+  }
+  projector_ = block_projector(weak_);
+  JointMatrix rest(a.rows(), a.cols());
+  rest.setIdentity();
+  const double scale = std::max(a.diagonal().mean(), 1e-300);
+  const JointMatrix projected = projector_ * a * projector_;
+  held_ = damped(projected + scale * (rest - projector_), rounding_share);
+  factor_ = factor_of(held_);
+}
+
+Eigen::MatrixXd WithholdingSolver::solve(const Eigen::MatrixXd& b) const {
+  if (blocks_) return projector_ * factor_->solve(Eigen::MatrixXd(projector_ * b));
+  const Eigen::MatrixXd x = factor_->solve(b);
+  if (weak_.cols() == 0) return x;
+  return x - reply_ * response_.solve(weak_.transpose() * x);
+}
+
+// With G = F - R K R^T, F the factor's inverse, R = F W and K = (W^T R)^-1, G M G is F M F less
+// R K U^T and its transpose, U = F M R, plus R K (R^T M R) K R^T.
+std::vector<Matrix6> WithholdingSolver::sandwich_blocks(const JointMatrix& m) const {
+  if (blocks_) return scan::sandwich_blocks(held_, projector_ * m * projector_);
+  std::vector<Matrix6> blocks = scan::sandwich_blocks(held_, m);
+  if (weak_.cols() == 0) return blocks;
+  const Eigen::MatrixXd spread = m * reply_, u = factor_->solve(spread);
+  const Eigen::MatrixXd both = response_.solve(reply_.transpose());  // K R^T
+  const Eigen::MatrixXd inner = reply_.transpose() * spread;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const Eigen::MatrixXd own = both.middleCols<6>(6 * Eigen::Index(k));
+    const Matrix6 cross = u.middleRows<6>(6 * Eigen::Index(k)) * own;
+    blocks[k] += own.transpose() * inner * own - cross - cross.transpose();
+  }
+  return blocks;
+}
+
+}  // namespace scan

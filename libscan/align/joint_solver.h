@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// Sparse solves for the poses of many scans together, some motions of which are withheld.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <memory>
+#include <vector>
+
+#include "libscan/align/joint_system.h"
+
+namespace scan {
+
+using JointMatrix = Eigen::SparseMatrix<double>;
+using JointFactor = Eigen::SimplicialLDLT<JointMatrix>;
+
+JointMatrix matrix_of(const JointSystem& system, const JointEntries& entries);
+
+// A + a share of its diagonal, so that what nothing holds stays where it is.
+JointMatrix damped(const JointMatrix& a, double share);
+
+// Throws scan::Error (computation) for a singular matrix.
+std::unique_ptr<JointFactor> factor_of(const JointMatrix& a);
+
+// Solutions of A x = b in least squares with no part along orthonormal `weak` motions. Where each
+// is of one scan, with P = I - W W^T these are (P A P + s W W^T)^-1 P b for any s, as sparse as A;
+// few of many scans are taken out of A^-1 b.
+class WithholdingSolver {
+ public:
+  WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak);
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+  // Of G M G along the diagonal, G b being the solution of A x = b.
+  std::vector<Matrix6> sandwich_blocks(const JointMatrix& m) const;
+
+ private:
+  Eigen::MatrixXd weak_;
+  bool blocks_ = false;
+  JointMatrix projector_, held_;
+  std::unique_ptr<JointFactor> factor_;
+  Eigen::MatrixXd reply_;
+  Eigen::LDLT<Eigen::MatrixXd> response_;
+};
+
+}  // namespace scan

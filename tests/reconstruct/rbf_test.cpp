@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/reconstruct/rbf.h"
+
+#include <gtest/gtest.h>
+
+#include "libscan/core/error.h"
+#include "tests/reconstruct/shapes.h"
+
+namespace scan {
+namespace {
+
+double from_torus(const Eigen::Vector3d& x) {
+  return std::abs(std::hypot(std::hypot(x[0], x[1]) - 1, x[2]) - 0.35);
+}
+
+double mean_distance(const Mesh& mesh, double (*distance)(const Eigen::Vector3d&)) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles)
+    sum += distance((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3);
+  return sum / static_cast<double>(mesh.triangles.size());
+}
+
+void expect_torus(const SurfaceResult& result) {
+  const EdgeCensus census = edge_census(result.surface);
+  EXPECT_TRUE(census.watertight);
+  EXPECT_EQ(census.non_manifold_vertices, 0u);
+  EXPECT_EQ(census.components, 1u);
+  EXPECT_EQ(census.genus, 1);
+}
+
+// The middle of a facet lies off by its chord, which goes with the square of its size: a quarter
+// for four times the points; the cells' sizes are powers of two, whence the room.
+TEST(Rbf, ErrorFallsWithTheSquareOfTheSpacing) {
+  const SurfaceResult coarse = rbf(torus_cloud(1500)), fine = rbf(torus_cloud(6000));
+  expect_torus(coarse);
+  expect_torus(fine);
+  const double ratio =
+      mean_distance(coarse.surface, from_torus) / mean_distance(fine.surface, from_torus);
+  EXPECT_GT(ratio, 3);
+  EXPECT_LT(mean_distance(fine.surface, from_torus), 1e-3);
+}
+
+// Each level averages sigma = 0.02 over what noise leaves it: 20,000 points tell of a torus, whose
+// detail is as wide as its tube, through some 40 degrees of freedom: 0.02 sqrt(40 / 20000) =
+// 0.0009. Half as much again for a basis that was not made for tori.
+TEST(Rbf, DoesNotFollowNoise) {
+  const SurfaceResult result = rbf(scattered(torus_cloud(20000), 0.02));
+  expect_torus(result);
+  EXPECT_LT(mean_distance(result.surface, from_torus), 0.00135);
+  EXPECT_NEAR(result.sigma_m, 0.02, 0.004);
+}
+
+// A cap of half-angle 0.4 is missing: the surface goes over it smoothly and says so.
+TEST(Rbf, ClosesAHoleAndMarksIt) {
+  const PointCloud whole = sphere_cloud(6000);
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < whole.size(); ++i)
+    if (whole.points[i][2] < std::cos(0.4)) kept.push_back(i);
+  const SurfaceResult result = rbf(subset(whole, kept));
+  const EdgeCensus census = edge_census(result.surface);
+  EXPECT_TRUE(census.watertight);
+  EXPECT_EQ(census.genus, 0);
+  double farthest = 0;
+  for (std::size_t v = 0; v < result.surface.vertices.size(); ++v) {
+    farthest = std::max(farthest, result.support_m[v]);
+    // A flat lid would lie 1 - cos 0.4 = 0.079 below the sphere.
+    EXPECT_NEAR(result.surface.vertices[v].norm(), 1, 0.02);
+  }
+  EXPECT_NEAR(farthest, 0.4, 0.05);
+}
+
+TEST(Rbf, RefusesADepthOutsideItsLimits) {
+  EXPECT_THROW(rbf(sphere_cloud(100), {.max_depth = 2}), Error);
+  EXPECT_THROW(rbf(sphere_cloud(100), {.max_depth = 21}), Error);
+}
+
+}  // namespace
+}  // namespace scan

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// `scan report`: the page, its twins, and what it makes of runs that are not whole.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/small_run.h"
+
+namespace scan::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr int input = 3, usage = 2;
+
+struct Written {
+  Outcome outcome;
+  std::string page, csv;
+  ordered_json twin;
+};
+
+Written report_of(const fs::path& run, const Folder& folder,
+                  const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments = {"report", run.string(), (folder / "out.html").string()};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  Written written{run_scan(arguments), slurp(folder / "out.html"), slurp(folder / "out.csv"), {}};
+  if (fs::exists(folder / "out.json"))
+    written.twin = ordered_json::parse(slurp(folder / "out.json"));
+  return written;
+}
+
+// The small run, to be broken.
+fs::path copy_of_run(const Folder& folder) {
+  fs::copy(small_run(), folder / "run", fs::copy_options::recursive);
+  return folder / "run";
+}
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::string without_scripts(std::string page) {
+  for (auto at = page.find("<script"); at != std::string::npos; at = page.find("<script", at))
+    page.erase(at, page.find("</script>", at) + 9 - at);
+  return page;
+}
+
+TEST(Report, HasTheSameNumbersOnThePageAndInItsTwins) {
+  const Folder folder;
+  const Written report = report_of(small_run(), folder);
+  ASSERT_EQ(report.outcome.exit_code, 0) << report.outcome.err;
+  const auto verdict = ordered_json::parse(slurp(small_run() / "verdict.json"));
+  EXPECT_EQ(report.twin.at("measurements"), verdict.at("measurements"));
+  EXPECT_GT(verdict.at("measurements").size(), 20u);
+  for (const auto& m : verdict.at("measurements")) {
+    if (!m.at("value").is_number()) continue;
+    EXPECT_TRUE(holds(report.page, "<data value=\"" + m.at("value").dump() + "\">")) << m;
+    EXPECT_TRUE(holds(report.csv, "verdict," + m.at("name").get<std::string>() + "," +
+                                      m.at("value").dump() + ","))
+        << m;
+  }
+  const ordered_json& deviation = report.twin.at("deviation");
+  for (const auto& [name, value] : deviation.at("statistics").items()) {
+    EXPECT_TRUE(holds(report.csv, "deviation," + name + "," + value.dump() + ",")) << name;
+    if (name.ends_with("_m")) {
+      EXPECT_TRUE(holds(report.page, "<data value=\"" + value.dump() + "\">")) << name;
+    }
+  }
+  for (const auto& place : deviation.at("call_outs"))
+    for (const auto& coordinate : place.at("position_m"))
+      EXPECT_TRUE(holds(report.page, "<data value=\"" + coordinate.dump() + "\">"));
+  EXPECT_GE(deviation.at("call_outs").size(), 3u);
+}
+
+TEST(Report, OfARunIsThatOfTheFolder) {
+  const Folder folder;
+  const Written report = report_of(small_run(), folder);
+  EXPECT_EQ(report.csv, slurp(small_run() / "report.csv"));
+  EXPECT_EQ(report.twin, ordered_json::parse(slurp(small_run() / "report.json")));
+  EXPECT_EQ(report.page, slurp(small_run() / "report.html"));
+}
+
+TEST(Report, IsBelowTwoMegabytesAndLoadsNothing) {
+  const std::string page = slurp(small_run() / "report.html");
+  EXPECT_LT(page.size(), 2'000'000u);
+  // Scripts aside, whose text is data here, every link stays on the page and every source is data.
+  const std::string shown = without_scripts(page);
+  for (const char* name : {" src=", " href=", " action=", " poster=", " srcset=", " data="})
+    for (auto at = shown.find(name); at != std::string::npos; at = shown.find(name, at + 1)) {
+      const std::string value = shown.substr(at + std::string(name).size() + 1, 22);
+      EXPECT_TRUE(value.starts_with("data:image/png;base64,") || value.starts_with("#"))
+          << name << value;
+    }
+  for (const char* word : {"<link", "<iframe", "<object", "<embed", "<base", "@import", "url("})
+    EXPECT_FALSE(holds(page, word)) << word;
+  EXPECT_TRUE(holds(page, "default-src 'none'"));
+  EXPECT_TRUE(holds(page, "The MIT License"));
+}
+
+TEST(Report, PutsTheVerdictFirstAndGivesEachPartATitle) {
+  const std::string page = slurp(small_run() / "report.html");
+  const auto verdict = page.find("class=\"verdict ");
+  EXPECT_LT(verdict, page.find("<nav"));
+  auto before = verdict;
+  for (const char* id : {"verdict", "map", "view", "histogram", "figures", "poses", "scans",
+                         "effects", "cost", "provenance"}) {
+    const auto at = page.find("<section id=\"" + std::string(id) + "\"");
+    ASSERT_NE(at, std::string::npos) << id;
+    EXPECT_GT(at, before) << id;
+    EXPECT_TRUE(holds(page, "<a href=\"#" + std::string(id) + "\"")) << id;
+    before = at;
+  }
+  EXPECT_TRUE(holds(page, "Why this limit: One &lt;body&gt;, &quot;whole&quot;."));
+  for (auto at = page.find("<img"); at != std::string::npos; at = page.find("<img", at + 1)) {
+    const std::string tag = page.substr(at, page.find("src=", at) - at);
+    const auto alt = tag.find(" alt=\"");
+    ASSERT_NE(alt, std::string::npos);
+    EXPECT_GT(tag.find('"', alt + 6) - alt, 16u) << tag;  // at least ten letters
+  }
+}
+
+TEST(Report, ShowsTextOfARunAsTextOnly) {
+  const Folder folder;
+  const fs::path run = copy_of_run(folder);
+  auto recipe = ordered_json::parse(slurp(run / "recipe.json"));
+  recipe["name"] = "</script><script>alert(1)</script><img src=x onerror=alert(1)>";
+  spill(run / "recipe.json", recipe.dump());
+  const Written report = report_of(run, folder);
+  ASSERT_EQ(report.outcome.exit_code, 0) << report.outcome.err;
+  EXPECT_FALSE(holds(report.page, "<script>alert"));
+  EXPECT_FALSE(holds(report.page, "<img src=x"));
+  EXPECT_EQ(report.twin.at("title"), recipe["name"]);
+}
+
+TEST(Report, TellsThePosesWay) {
+  const auto trace = ordered_json::parse(slurp(small_run() / "pose_trace.json"));
+  const ordered_json& steps = trace.at("steps");
+  ASSERT_GT(steps.size(), 4u);
+  EXPECT_EQ(steps.front().at("step"), "guess");
+  EXPECT_TRUE(steps.back().at("step").get<std::string>().starts_with("joint "));
+  // poses.tum: time, then the same seven numbers; the last round is the answer.
+  std::istringstream poses(slurp(small_run() / "poses.tum"));
+  for (std::string comment; poses.peek() == '#';) std::getline(poses, comment);
+  for (const auto& pose : steps.back().at("world_from_scan")) {
+    double stamp = 0;
+    poses >> stamp;
+    std::vector<double> found(7);
+    for (double& number : found) poses >> number;
+    const auto traced = pose.get<std::vector<double>>();
+    const double side = found[6] * traced[6] < 0 ? -1 : 1;  // q and -q are one rotation
+    for (std::size_t k = 0; k < 7; ++k)
+      EXPECT_NEAR(traced[k] * (k < 3 ? 1 : side), found[k], 1e-12);
+  }
+}
+
+TEST(Report, OfARunCutShortNamesWhatIsMissing) {
+  const struct {
+    std::vector<std::string> gone;
+    std::string says;
+  } cases[] = {{{"verdict.json"}, "verdict.json is not there: nothing was verified"},
+               {{"verdict.json", "surface.ply", "reconstruction.json"}, "surface.ply is not there"},
+               {{"verdict.json", "surface.ply", "reconstruction.json", "poses.tum",
+                 "alignment.json", "pose_trace.json"},
+                "poses.tum is not there: the scans were not aligned"},
+               {{"truth"}, "truth is not there: no deviation can be told"},
+               {{"verdict.json", "surface.ply", "scans", "effects.json", "timings.json", "truth",
+                 "alignment.json", "poses.tum"},
+                "scans/000.ply is not there"}};
+  for (const auto& one : cases) {
+    const Folder folder;
+    const fs::path run = copy_of_run(folder);
+    for (const std::string& name : one.gone) fs::remove_all(run / name);
+    const Written report = report_of(run, folder);
+    ASSERT_EQ(report.outcome.exit_code, 0) << one.says << report.outcome.err;
+    EXPECT_TRUE(holds(report.page, one.says)) << one.says;
+    EXPECT_EQ(report.twin.at("missing").empty(), false);
+    if (one.gone.front() == "verdict.json") {
+      EXPECT_EQ(report.twin.at("verdict"), "not verified");
+      EXPECT_TRUE(holds(report.page, "<p class=\"verdict none\""));
+    }
+  }
+}
+
+TEST(Report, OfBrokenFilesIsOneError) {
+  const struct {
+    std::string file, content;
+  } cases[] = {{"verdict.json", "{ \"measurements\": [ {"},
+               {"verdict.json", "[]"},
+               {"verdict.json", "{ \"measurements\": [ { \"name\": 3 } ], \"pass\": true }"},
+               {"alignment.json", "{}"},
+               {"effects.json", "7"},
+               {"pose_trace.json", "{ \"steps\": [ { \"step\": \"guess\" } ] }"},
+               {"poses.tum", "0 0 0 0 0 0 0 1\n"},
+               {"surface.ply", "ply\n"}};
+  for (const auto& one : cases) {
+    const Folder folder;
+    const fs::path run = copy_of_run(folder);
+    spill(run / one.file, one.content);
+    const Written report = report_of(run, folder);
+    EXPECT_EQ(report.outcome.exit_code, input) << one.file << " " << one.content;
+    EXPECT_TRUE(holds(report.outcome.err, "error: ")) << report.outcome.err;
+    EXPECT_EQ(std::count(report.outcome.err.begin(), report.outcome.err.end(), '\n'), 1)
+        << report.outcome.err;
+    EXPECT_FALSE(fs::exists(folder / "out.html"));
+  }
+  const Folder folder;
+  EXPECT_EQ(report_of(folder.path(), folder).outcome.exit_code, input);
+}
+
+TEST(Report, RefusesThePageItsTwinsNames) {
+  const Outcome outcome =
+      run_scan({"report", small_run().string(), (small_run() / "x.json").string()});
+  EXPECT_EQ(outcome.exit_code, usage);
+}
+
+TEST(Report, TakesADataSheetAndAStudy) {
+  const Folder folder;
+  spill(folder / "sheet.json",
+        R"({ "pass": true, "measurements": [ { "name": "probing_form", "value": 1.25e-5,
+             "unit": "m", "over": "10 balls", "count": 10, "limit": null, "pass": true,
+             "predicted": 1.5e-5 } ] })");
+  spill(folder / "study.json",
+        R"({ "figure": "accuracy_rms", "unit": "m", "tolerance": 0.001, "machine": "a machine",
+             "threads": 2, "sources": [], "advice": { "text": "Take this.", "meets": true },
+             "runs": [ { "settings": { "reconstruct/depth": 5 }, "error_m": 0.0005,
+               "least_error": 0.0004, "most_error": 0.0006, "count": 2, "seconds": 1.5,
+               "stage_seconds": { "align": 1.5 }, "trouble": "", "on_front": true } ] })");
+  const Written report = report_of(small_run(), folder,
+                                   {"--artefacts", (folder / "sheet.json").string(), "--tradeoff",
+                                    (folder / "study.json").string()});
+  ASSERT_EQ(report.outcome.exit_code, 0) << report.outcome.err;
+  EXPECT_TRUE(holds(report.page, "<data value=\"1.25e-05\">12.5 µm</data>"));
+  EXPECT_TRUE(holds(report.page, "<data value=\"1.5e-05\">15 µm</data>"));
+  EXPECT_TRUE(holds(report.csv, "artefacts,probing_form,1.25e-05,m"));
+  EXPECT_TRUE(holds(report.page, "Take this."));
+  EXPECT_TRUE(holds(report.page, "<section id=\"tradeoff\""));
+}
+
+}  // namespace
+}  // namespace scan::test
