@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "libscan/align/joint_refinement.h"
