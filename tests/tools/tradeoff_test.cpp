@@ -97,7 +97,7 @@ TEST(Tradeoff, AdvisesEachCaseForItself) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_NE(csv.find("dark,5,1,"), std::string::npos) << csv;
   const std::string svg = slurp(folder / "out/tradeoff.svg");
-  EXPECT_EQ(svg.rfind("<svg xmlns='http://www.w3.org/2000/svg'", 0), 0u);
+  EXPECT_EQ(svg.rfind("<svg class='plot' xmlns='http://www.w3.org/2000/svg'", 0), 0u);
   EXPECT_NE(svg.find(">clean<"), std::string::npos);
   EXPECT_NE(svg.find(">dark<"), std::string::npos);
 }
