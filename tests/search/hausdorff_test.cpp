@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // The farthest point of meshes where it is known in closed form, and against samples and CGAL.
-#include "libscan/verify/hausdorff.h"
+#include "libscan/search/hausdorff.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/random.h"
-#include "libscan/search/closest_point.h"
 #include "tests/core/meshes.h"
 
 #ifdef LIBSCAN_WITH_CGAL
@@ -34,12 +33,34 @@ Mesh shaken(Mesh mesh, double sigma_m) {
   return mesh;
 }
 
+// The unit square, `cells` a side, at a height that depends on the place.
+template <class Height>
+Mesh grid(std::uint32_t cells, Height height) {
+  Mesh mesh;
+  for (std::uint32_t j = 0; j <= cells; ++j)
+    for (std::uint32_t i = 0; i <= cells; ++i) {
+      const double x = double(i) / cells, y = double(j) / cells;
+      mesh.vertices.push_back({x, y, height(x, y)});
+    }
+  for (std::uint32_t j = 0; j < cells; ++j)
+    for (std::uint32_t i = 0; i < cells; ++i) {
+      const std::uint32_t a = i + (cells + 1) * j, b = a + 1, c = a + cells + 1, d = c + 1;
+      mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({a, d, c});
+    }
+  return mesh;
+}
+
+double flat(double, double) {
+  return 0;
+}
+
 // A square shifted along its normal: both bounds are the shift, since each is one triangle's.
 TEST(Hausdorff, OfAShiftedSquareIsTheShift) {
   const Mesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-  const Interval bounds = hausdorff_m(square, moved(square, {0, 0, 0.01}));
-  EXPECT_NEAR(bounds.low, 0.01, 1e-14);
-  EXPECT_NEAR(bounds.high, 0.01, 1e-14);
+  const DistanceBounds bounds = hausdorff_distance(square, moved(square, {0, 0, 0.01}));
+  EXPECT_NEAR(bounds.low_m, 0.01, 1e-14);
+  EXPECT_NEAR(bounds.high_m, 0.01, 1e-14);
 }
 
 // The cube's corner (1, 1), at the distance r = sqrt(1/2) and at 45 degrees from the middle, is
@@ -49,10 +70,11 @@ TEST(Hausdorff, OfATurnedBoxIsThatOfItsCorner) {
   const Eigen::Translation3d middle(0.5, 0.5, 0.5);
   const Pose turn(middle * Eigen::AngleAxisd(t, Eigen::Vector3d::UnitZ()) * middle.inverse());
   const double expected = std::sqrt(0.5) * std::sin(std::numbers::pi / 4 + t) - 0.5;
-  const Interval bounds = hausdorff_m(transformed(turn, cube(1)), cube(1), {.widest_share = 1e-3});
-  EXPECT_NEAR(bounds.low, expected, 1e-12 * expected);
-  EXPECT_GE(bounds.high, bounds.low);
-  EXPECT_LE(bounds.high, 1.001 * expected);
+  const DistanceBounds bounds =
+      hausdorff_distance(transformed(turn, cube(1)), cube(1), {.widest_share = 1e-3});
+  EXPECT_NEAR(bounds.low_m, expected, 1e-12 * expected);
+  EXPECT_GE(bounds.high_m, bounds.low_m);
+  EXPECT_LE(bounds.high_m, 1.001 * expected);
 }
 
 // The farthest point is inside a triangle, where no vertex is: a square over a pit with the depth 1
@@ -71,10 +93,10 @@ TEST(Hausdorff, FindsAPointWithinATriangle) {
        {9, -9, 0},
        {9, 9, 0}},
       {{0, 2, 1}, {1, 2, 3}, {2, 4, 3}, {3, 4, 5}, {6, 0, 1}, {6, 1, 7}, {4, 8, 5}, {5, 8, 9}}};
-  const Interval bounds = farthest_distance_m(lid, pit);
-  EXPECT_LE(bounds.low, std::sqrt(0.5) * (1 + 1e-14));
-  EXPECT_GE(bounds.high, std::sqrt(0.5) * (1 - 1e-14));
-  EXPECT_LE(bounds.high, 1.01 * bounds.low);
+  const DistanceBounds bounds = farthest_distance(lid, pit);
+  EXPECT_LE(bounds.low_m, std::sqrt(0.5) * (1 + 1e-14));
+  EXPECT_GE(bounds.high_m, std::sqrt(0.5) * (1 - 1e-14));
+  EXPECT_LE(bounds.high_m, 1.01 * bounds.low_m);
 }
 
 // Of a triangle with three crumbs at its corners the middle is farthest, the circle's radius away.
@@ -88,10 +110,10 @@ TEST(Hausdorff, FindsTheMiddleOfATriangle) {
     crumbs.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
   }
   const double radius = 1 / std::numbers::sqrt3;
-  const Interval bounds = farthest_distance_m(face, crumbs);
-  EXPECT_LE(bounds.low, radius * (1 + 1e-8));
-  EXPECT_GE(bounds.high, radius * (1 - 1e-8));
-  EXPECT_LE(bounds.high, 1.01 * bounds.low);
+  const DistanceBounds bounds = farthest_distance(face, crumbs);
+  EXPECT_LE(bounds.low_m, radius * (1 + 1e-8));
+  EXPECT_GE(bounds.high_m, radius * (1 - 1e-8));
+  EXPECT_LE(bounds.high_m, 1.01 * bounds.low_m);
 }
 
 // The bounds hold what samples find, and a budget too small widens them and does not break them.
@@ -101,18 +123,57 @@ TEST(Hausdorff, HoldsTheFarthestSample) {
   double farthest_m = 0;
   for (const SurfaceSample& sample : sample_surface(a, 50'000, 1))
     farthest_m = std::max(farthest_m, search.closest(sample.point).distance_m);
-  const Interval bounds = farthest_distance_m(a, b);
-  EXPECT_LE(bounds.high, 1.01 * bounds.low * (1 + 1e-12));
-  EXPECT_LE(farthest_m, bounds.high);
-  EXPECT_GT(bounds.low, 0.8 * farthest_m);
-  const Interval hasty = farthest_distance_m(a, b, {.most_queries = 1});
-  EXPECT_LE(hasty.low, bounds.low);
-  EXPECT_GE(hasty.high, bounds.high);
+  const DistanceBounds bounds = farthest_distance(a, b);
+  EXPECT_LE(bounds.high_m, 1.01 * bounds.low_m * (1 + 1e-12));
+  EXPECT_LE(farthest_m, bounds.high_m);
+  EXPECT_GT(bounds.low_m, 0.8 * farthest_m);
+  const DistanceBounds hasty = farthest_distance(a, b, {.most_queries = 1});
+  EXPECT_LE(hasty.low_m, bounds.low_m);
+  EXPECT_GE(hasty.high_m, bounds.high_m);
+}
+
+// With a limit only what it asks is done, and what it answers is proven. Pieces that lie across a
+// seam of the other mesh see one of its triangles from as far to the side as they are wide.
+TEST(Hausdorff, WithinALimitIsExactBetweenParallelSquares) {
+  const Mesh coarse = grid(1, flat);
+  const Mesh fine = grid(9, [](double, double) { return 0.1; });
+  const double limit_m = 0.1 + 4e-7;
+  const DistanceBounds within =
+      hausdorff_distance(coarse, fine, {.limit_m = limit_m, .most_queries = 10'000'000});
+  EXPECT_NEAR(within.high_m, 0.1, 4e-7);
+  EXPECT_LE(within.high_m, limit_m);
+  EXPECT_NEAR(within.low_m, 0.1, 1e-15);
+  EXPECT_TRUE(std::isinf(hausdorff_distance(coarse, fine, {.limit_m = 0.1 - 1e-12}).high_m));
+}
+
+// No vertex of the flat square is farther than the sides of the pyramid; its middle is 0.5 below.
+TEST(Hausdorff, WithinALimitSeesWhatNoVertexShows) {
+  const Mesh sheet = grid(1, flat);
+  const Mesh bump = grid(2, [](double x, double y) { return x == 0.5 && y == 0.5 ? 0.5 : 0; });
+  EXPECT_GT(farthest_distance(sheet, bump, {.limit_m = 0.2}).high_m, 0.2);
+  EXPECT_GT(farthest_distance(bump, sheet, {.limit_m = 0.499}).high_m, 0.499);
+  EXPECT_LE(farthest_distance(bump, sheet, {.limit_m = 0.501}).high_m, 0.501);
+}
+
+// Never below what samples show, and proven where the limit leaves it a hundredth.
+TEST(Hausdorff, WithinALimitHoldsForSamplesOfRoughSurfaces) {
+  RandomStream random(1, 0, 0);
+  const auto rough = [&](double, double) { return 0.05 * random.uniform(); };
+  const Mesh a = grid(6, rough), b = grid(5, rough);
+  const MeshSearch search(b);
+  double largest_m = 0;
+  for (const SurfaceSample& s : sample_surface(a, 200'000, 1))
+    largest_m = std::max(largest_m, search.closest(s.point).distance_m);
+  EXPECT_GT(farthest_distance(a, b, {.limit_m = largest_m}).high_m, largest_m);
+  const DistanceBounds within = farthest_distance(a, b, {.limit_m = 1.01 * largest_m});
+  EXPECT_LE(within.high_m, 1.01 * largest_m);
+  EXPECT_GE(within.high_m, largest_m);
+  EXPECT_LE(within.low_m, within.high_m);
 }
 
 TEST(Hausdorff, RefusesNothing) {
-  EXPECT_THROW(hausdorff_m({}, cube(1)), Error);
-  EXPECT_THROW(hausdorff_m(cube(1), {}), Error);
+  EXPECT_THROW(hausdorff_distance({}, cube(1)), Error);
+  EXPECT_THROW(hausdorff_distance(cube(1), {}), Error);
 }
 
 #ifdef LIBSCAN_WITH_CGAL
@@ -131,12 +192,12 @@ Surface surface_of(const Mesh& mesh) {
 TEST(Hausdorff, AgreesWithCgal) {
   namespace pmp = CGAL::Polygon_mesh_processing;
   const Mesh a = shaken(torus(3, 1, 30, 20), 0.05), b = torus(3, 1, 30, 20);
-  const Interval bounds = hausdorff_m(a, b);
+  const DistanceBounds bounds = hausdorff_distance(a, b);
   constexpr double bound_m = 1e-4;
   const double cgal_m = pmp::bounded_error_symmetric_Hausdorff_distance<CGAL::Sequential_tag>(
       surface_of(a), surface_of(b), bound_m);
-  EXPECT_GE(cgal_m, bounds.low - bound_m);
-  EXPECT_LE(cgal_m, bounds.high + bound_m);
+  EXPECT_GE(cgal_m, bounds.low_m - bound_m);
+  EXPECT_LE(cgal_m, bounds.high_m + bound_m);
 }
 #else
 TEST(Hausdorff, AgreesWithCgal) {
