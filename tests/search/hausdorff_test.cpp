@@ -24,15 +24,6 @@ Mesh moved(const Mesh& mesh, const Eigen::Vector3d& by) {
   return transformed(make_pose(Eigen::Matrix3d::Identity(), by), mesh);
 }
 
-Mesh shaken(Mesh mesh, double sigma_m) {
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    RandomStream random(1, 0, i);
-    const double x = random.normal(), y = random.normal(), z = random.normal();
-    mesh.vertices[i] += sigma_m * Eigen::Vector3d(x, y, z);
-  }
-  return mesh;
-}
-
 // The unit square, `cells` a side, at a height that depends on the place.
 template <class Height>
 Mesh grid(std::uint32_t cells, Height height) {
