@@ -16,8 +16,8 @@ namespace {
 constexpr double page_width = 760, wide_height = 420, narrow_height = 300, legend_height = 26;
 
 // Distinct for the colour-blind too (Okabe and Ito 2008).
-constexpr std::array<const char*, 7> colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                "#e69f00", "#56b4e9", "#000000"};
+constexpr std::array<const char*, 8> colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                "#e69f00", "#56b4e9", "#000000", "#8a8a8a"};
 
 template <class... Numbers>
 std::string print(const char* format, Numbers... numbers) {
