@@ -16,15 +16,6 @@ constexpr double damping = 1e-9;
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-// The twist of the form's source, its target held, that brings them to where the guesses have them.
-Vector6 way_of(const JointForm& form, std::span<const Pose> poses, std::span<const Pose> guesses) {
-  const Pose there = poses[form.target] * guesses[form.target].inverse() * guesses[form.source];
-  const Eigen::Translation3d centre(form.frame.centre);
-  Vector6 way = log(centre.inverse() * there * poses[form.source].inverse() * centre);
-  way.tail<3>() /= form.frame.size_m;
-  return way;
-}
-
 }  // namespace
 
 WayToGuesses way_to_guesses(std::span<const JointForm> forms, const JointFrame& frame,
@@ -36,7 +27,7 @@ WayToGuesses way_to_guesses(std::span<const JointForm> forms, const JointFrame& 
   const Sparse relative = relative_twists(forms, frame) * motions;
   Eigen::VectorXd wanted(relative.rows());
   for (std::size_t k = 0; k < forms.size(); ++k)
-    wanted.segment<6>(6 * Eigen::Index(k)) = way_of(forms[k], world_from_local, guesses);
+    wanted.segment<6>(6 * Eigen::Index(k)) = relative_twist(forms[k], world_from_local, guesses);
   Sparse normal = relative.transpose() * relative;
   const double least = std::max(damping * normal.diagonal().maxCoeff(), 1e-300);
   for (Eigen::Index i = 0; i < normal.rows(); ++i) normal.coeffRef(i, i) += least;

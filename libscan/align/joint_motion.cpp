@@ -24,7 +24,8 @@ Pose moved(const Pose& pose, const Vector6& twist, double size_m) {
                    pose.translation() + size_m * twist.tail<3>());
 }
 
-// The twist of the form's source against its target from `before` to `after`.
+}  // namespace
+
 Vector6 relative_twist(const JointForm& form, std::span<const Pose> before,
                        std::span<const Pose> after) {
   const Pose there = before[form.target] * after[form.target].inverse() * after[form.source];
@@ -33,8 +34,6 @@ Vector6 relative_twist(const JointForm& form, std::span<const Pose> before,
   twist.tail<3>() /= form.frame.size_m;
   return twist;
 }
-
-}  // namespace
 
 Sparse relative_twists(std::span<const JointForm> forms, const JointFrame& frame) {
   JointEntries entries;

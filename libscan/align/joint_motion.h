@@ -16,6 +16,11 @@ namespace scan {
 Eigen::SparseMatrix<double> relative_twists(std::span<const JointForm> forms,
                                             const JointFrame& frame);
 
+// The twist of a form's source against its target, about the form's centre and in its size, that
+// brings them from where they lie `before` to where they lie `after`.
+Vector6 relative_twist(const JointForm& form, std::span<const Pose> before,
+                       std::span<const Pose> after);
+
 // The poses after `twists`, those of coupled scans to each other as the twists say, to all orders:
 // a turn w moves neighbours apart by w^2 / 2 of their distance where each is turned about its own
 // centre and shifted, which in a long chain that sways costs them their partners. Gauss and Newton

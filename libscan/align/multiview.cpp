@@ -5,23 +5,20 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "libscan/align/agreement.h"
 #include "libscan/align/joint_poses.h"
 #include "libscan/align/overlaps.h"
+#include "libscan/align/prepared_scans.h"
 #include "libscan/align/scan_edges.h"
 #include "libscan/core/error.h"
-#include "libscan/core/median.h"
-#include "libscan/core/parallel.h"
 
 namespace scan {
 namespace {
 
 constexpr std::size_t least_points = 6;
 constexpr double most_off_rotation = 1e-6;  // of any entry
-// Thinning keeps about every fourth point of a surface.
-constexpr double thin_in_spacings = 2;
-constexpr double most_sigma_in_medians = 2;
 // How far off a guess may put a scan, as a share of its extent.
 constexpr double guess_share_of_extent = 0.05;
 // Enough for several loops through each scan.
@@ -59,49 +56,13 @@ void check_input(std::span<const PointCloud> clouds, std::span<const Pose> guess
   }
 }
 
-// Without the points whose sigma is more than twice the scan's median: readings at grazing
-// incidence, which slide along the surface rather than off it and bend the normals around them.
-PointCloud without_weak_points(PointCloud cloud) {
-  if (cloud.sigma_m.empty()) return cloud;
-  const double limit_m = most_sigma_in_medians * median(cloud.sigma_m);
-  std::vector<std::uint32_t> kept;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i)
-    if (cloud.sigma_m[i] <= limit_m) kept.push_back(i);
-  return subset(cloud, kept);
-}
-
-PreparedScans prepare_scans(std::span<const PointCloud> clouds, const MultiviewOptions& options) {
-  std::vector<PointCloud> finite(clouds.size());
-  std::vector<double> spacings(clouds.size());
-  parallel_for(
-      clouds.size(),
-      [&](std::size_t i) {
-        finite[i] = without_weak_points(subset(clouds[i], finite_points(clouds[i])));
-        if (options.thin_m == 0)
-          spacings[i] = spacing_m(finite[i].points, KdTree(finite[i].points));
-      },
-      1);
-  std::erase(spacings, 0);
-  const double side_m =
-      options.thin_m > 0 ? options.thin_m : thin_in_spacings * median(std::move(spacings));
-  PreparedScans scans;
-  scans.clouds.resize(clouds.size());
-  scans.tolerance_m.resize(clouds.size());
-  parallel_for(
-      clouds.size(),
-      [&](std::size_t i) {
-        scans.clouds[i] = prepare(finite[i], {.thin_m = side_m, .search = options.icp.search});
-        scans.tolerance_m[i] = tolerated_residual_m(scans.clouds[i], median(finite[i].sigma_m));
-        finite[i] = {};
-      },
-      1);
-  return scans;
-}
-
 double extent_m(const PreparedCloud& cloud) {
   const Bounds box = bounds_of(cloud.points);
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
+
+// Where among the edges the one of a source and a target stands.
+using EdgePlaces = std::map<std::pair<std::size_t, std::size_t>, std::size_t>;
 
 // Alignment of all scans, in a frame that is the world moved to `origin_`.
 class Alignment {
@@ -112,9 +73,9 @@ class Alignment {
 
  private:
   void find_poses();
-  std::vector<EdgeTask> open_pairs() const;
+  std::vector<EdgeTask> open_pairs(const EdgePlaces& tried) const;
   Pose relative(std::size_t source, std::size_t target) const;
-  ScanEdge* edge_between(std::size_t source, std::size_t target);
+  bool is_done(const ScanEdge& edge, const EdgeTask& task) const;
   void solve();
   void refine();
   std::vector<Pose> world_poses(std::span<const Pose> world_from_local) const;
@@ -158,31 +119,26 @@ Pose Alignment::relative(std::size_t source, std::size_t target) const {
                      scans_.clouds[target]);
 }
 
-ScanEdge* Alignment::edge_between(std::size_t source, std::size_t target) {
-  for (ScanEdge& edge : result_.edges)
-    if (edge.source == source && edge.target == target) return &edge;
-  return nullptr;
+// Accepted, or tried from nearly the same guess.
+bool Alignment::is_done(const ScanEdge& edge, const EdgeTask& task) const {
+  const PreparedCloud& source = scans_.clouds[task.source];
+  const Pose& before = edge.target_from_source_guess;
+  const double moved_m =
+      (before * source.origin - task.target_from_source_guess * source.origin).norm() +
+      source.radius_m * rotation_distance_rad(before, task.target_from_source_guess);
+  return edge.accepted || moved_m < source.spacing_m;
 }
 
-// Pairs that overlap at the present poses and have no accepted edge, unless they were tried from
-// nearly the same guess.
-std::vector<EdgeTask> Alignment::open_pairs() const {
+// Pairs that overlap at the present poses and are not done.
+std::vector<EdgeTask> Alignment::open_pairs(const EdgePlaces& tried) const {
   std::vector<EdgeTask> tasks;
   const auto overlaps =
       find_overlaps(scans_.clouds, poses_, guess_reach_m_, options_.icp.min_overlap);
   for (const Overlap& overlap : choose_pairs(overlaps, poses_.size(), most_partners)) {
     const EdgeTask task{overlap.source, overlap.target, relative(overlap.source, overlap.target)};
-    const PreparedCloud& source = scans_.clouds[overlap.source];
-    const bool tried =
-        std::any_of(result_.edges.begin(), result_.edges.end(), [&](const ScanEdge& edge) {
-          if (edge.source != task.source || edge.target != task.target) return false;
-          const Pose& before = edge.target_from_source_guess;
-          const double moved_m =
-              (before * source.origin - task.target_from_source_guess * source.origin).norm() +
-              source.radius_m * rotation_distance_rad(before, task.target_from_source_guess);
-          return edge.accepted || moved_m < source.spacing_m;
-        });
-    if (!tried) tasks.push_back(task);
+    const auto before = tried.find({task.source, task.target});
+    if (before == tried.end() || !is_done(result_.edges[before->second], task))
+      tasks.push_back(task);
   }
   return tasks;
 }
@@ -194,15 +150,17 @@ void Alignment::solve() {
 }
 
 void Alignment::find_poses() {
+  EdgePlaces places;
   for (int pass = 0; pass < most_passes; ++pass) {
-    const std::vector<EdgeTask> tasks = open_pairs();
+    const std::vector<EdgeTask> tasks = open_pairs(places);
     if (tasks.empty()) break;
     for (const ScanEdge& edge : align_pairs(scans_, tasks, options_, progress_)) {
-      ScanEdge* before = edge_between(edge.source, edge.target);
-      if (before)
-        *before = edge;
-      else
+      const auto [place, is_new] =
+          places.try_emplace({edge.source, edge.target}, result_.edges.size());
+      if (is_new)
         result_.edges.push_back(edge);
+      else
+        result_.edges[place->second] = edge;
     }
     solve();
   }

@@ -6,17 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "libscan/align/multiview.h"
 #include "libscan/align/pose_graph.h"
-#include "libscan/align/prepared_cloud.h"
+#include "libscan/align/prepared_scans.h"
 
 namespace scan {
-
-// The scans made ready, and how far residuals may be their own doing (see agreement.h).
-struct PreparedScans {
-  std::vector<PreparedCloud> clouds;
-  std::vector<double> tolerance_m;
-};
 
 // A pair to align and where to start, between the clouds' own frames.
 struct EdgeTask {

@@ -20,8 +20,9 @@ constexpr double open_extent = 0.5;
 // Along a rim chance leaves gaps; this many reaches (of 24 neighbours) bridge them, while points
 // that look like rims by chance stay apart as long as they are fewer than some 4 in 24 * 4.
 constexpr double link = 2;
-// Thickness is the scatter, width some 1.4 spacings: scatter of a third of a spacing. Local fits of
-// clouds at 0.19 (0.1 % noise on the torus, the bunny) still make one surface.
+// Thickness is the scatter, width some 1.4 spacings: scatter of a third of a spacing.
+// Clouds with 0.1 % noise (torus, bunny) are at 0.19 and count as flat; local fits are near their
+// end there: of the bunny they leave genus 3 and 100 open edges.
 constexpr double flat = 0.25;
 // A point is on a rim if its neighbours' mean lies off by more than this share of their reach: for
 // a full disc it is 0, with a deviation of 0.5 / sqrt(24) = 0.1 per axis; for half a disc

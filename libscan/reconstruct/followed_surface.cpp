@@ -18,17 +18,24 @@ namespace {
 
 using Place = std::array<std::int32_t, 3>;
 
+constexpr int deepest = 20;
 constexpr double root_tolerance = 1e-5;  // of the larger value at an edge's ends
 constexpr int most_steps = 20;
 constexpr double snap_guard = 5e-4;  // vertices keep this share of an edge off its ends
 
+// Corners per axis, both walls' among them: three such digits and an edge's axis fit into 64 bits,
+// where 21 bits a digit would not.
+constexpr std::uint64_t most_corners = (1u << deepest) + 1;
+
 std::uint64_t key_of(const Place& p) {
-  return std::uint64_t(p[0]) | std::uint64_t(p[1]) << 21 | std::uint64_t(p[2]) << 42;
+  return std::uint64_t(p[0]) +
+         most_corners * (std::uint64_t(p[1]) + most_corners * std::uint64_t(p[2]));
 }
 
 Place place_of(std::uint64_t key) {
-  constexpr std::uint64_t mask = (1u << 21) - 1;
-  return {std::int32_t(key & mask), std::int32_t(key >> 21 & mask), std::int32_t(key >> 42)};
+  const std::uint64_t rows = key / most_corners;
+  return {std::int32_t(key % most_corners), std::int32_t(rows % most_corners),
+          std::int32_t(rows / most_corners)};
 }
 
 Place corner_of(Place cell, int corner) {
@@ -259,6 +266,8 @@ Mesh Follower::mesh() const {
 
 Mesh followed_surface(std::span<const Eigen::Vector3d> seeds, int depth, const UnitField& field,
                       std::size_t most_cells) {
+  if (depth < 0 || depth > deepest)
+    throw Error(Trouble::usage, "surface: depth is " + std::to_string(depth) + ", limits 0 and 20");
   Follower follower(depth, field, most_cells);
   follower.follow(seeds);
   return follower.mesh();

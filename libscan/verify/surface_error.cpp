@@ -12,8 +12,8 @@
 #include "libscan/core/parallel.h"
 #include "libscan/search/batch.h"
 #include "libscan/search/closest_point.h"
+#include "libscan/search/hausdorff.h"
 #include "libscan/search/kd_tree.h"
-#include "libscan/verify/hausdorff.h"
 #include "libscan/verify/statistics.h"
 
 namespace scan {
@@ -164,11 +164,12 @@ std::vector<Measurement> compare(const Measured& measured, const TrueSurface& tr
 // Between two meshes no sample is needed: the distance lies between proven bounds.
 void prove_hausdorff(const Mesh& measured, const Mesh& truth, double diagonal_m,
                      std::vector<Measurement>& figures) {
-  const Interval bounds = hausdorff_m(measured, truth, {.least_m = least_share * diagonal_m});
+  const DistanceBounds bounds =
+      hausdorff_distance(measured, truth, {.least_m = least_share * diagonal_m});
   for (Measurement& m : figures) {
     if (m.name != "hausdorff") continue;
-    m.value = bounds.low;
-    m.interval = bounds;
+    m.value = bounds.low_m;
+    m.interval = Interval{bounds.low_m, bounds.high_m};
     m.over = "both surfaces, by branch and bound; the interval is certain";
     m.count = measured.triangles.size() + truth.triangles.size();
   }

@@ -48,7 +48,7 @@ struct SurfaceErrorOptions {
 
 // accuracy_mean, _rms, _median, _p95, _p997, _max (measured to truth, unsigned), the same of
 // completeness (truth to measured), hausdorff (the larger of the two maxima; of two meshes, all of
-// which was seen, the true one, see hausdorff.h), f_score,
+// which was seen, the true one, see search/hausdorff.h), f_score,
 // normal_error_mean (rad, between oriented normals at the measured samples; only if normals are
 // known). Throws scan::Error (input) for nothing measured, (computation)
 // if no part of the truth was seen.

@@ -46,4 +46,23 @@ inline double normalised_link_error2(const MultiviewResult& result, const std::v
   return twist.dot(edge.information * twist);
 }
 
+// Of the accepted edges between neighbours: how many, and the mean of their errors over the degrees
+// of freedom, 1 if the joint poses err as the pairs did.
+struct LinkErrors {
+  std::size_t links = 0;
+  double mean = 0;
+};
+
+inline LinkErrors link_errors(const MultiviewResult& result, const std::vector<Pose>& truth) {
+  LinkErrors errors;
+  double sum = 0;
+  for (const ScanEdge& edge : result.edges)
+    if (edge.target == edge.source + 1 && edge.accepted && edge.stop == Stop::converged) {
+      sum += normalised_link_error2(result, truth, edge) / 6;
+      ++errors.links;
+    }
+  errors.mean = sum / static_cast<double>(errors.links);
+  return errors;
+}
+
 }  // namespace scan::test

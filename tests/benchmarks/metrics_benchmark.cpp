@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "libscan/core/random.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/verify/statistics.h"
 #include "libscan/verify/surface_error.h"
@@ -23,15 +22,6 @@ namespace scan {
 namespace {
 
 constexpr std::size_t samples = 200'000;
-
-Mesh shaken(Mesh mesh, double sigma_m) {
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    RandomStream random(1, 0, i);
-    const double x = random.normal(), y = random.normal(), z = random.normal();
-    mesh.vertices[i] += sigma_m * Eigen::Vector3d(x, y, z);
-  }
-  return mesh;
-}
 
 Mesh turned(const Mesh& mesh) {
   return transformed(exp((Vector6() << 0.01, 0.02, -0.03, 0.01, 0, 0.02).finished()), mesh);

@@ -145,16 +145,11 @@ void long_path(std::size_t scans) {
   std::size_t tied = 0;
   for (const ScanPose& scan : result.scans)
     tied += scan.stop == Stop::converged || scan.stop == Stop::degenerate;
-  double sum = 0, links = 0;
-  for (const ScanEdge& edge : result.edges)
-    if (edge.target == edge.source + 1 && edge.accepted && edge.stop == Stop::converged) {
-      sum += test::normalised_link_error2(result, path.truth, edge) / 6;
-      ++links;
-    }
+  const test::LinkErrors errors = test::link_errors(result, path.truth);
   std::printf(
       "path of %4zu scans: %4zu tied, link errors e^T I e / 6 %.2f, %2d rounds, %6.2f s, %5.0f MiB "
       "at most so far\n",
-      scans, tied, sum / links, result.rounds, result.cost.seconds, peak_memory_mib());
+      scans, tied, errors.mean, result.rounds, result.cost.seconds, peak_memory_mib());
 }
 
 }  // namespace

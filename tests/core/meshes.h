@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "libscan/core/mesh.h"
+#include "libscan/core/random.h"
 
 namespace scan {
 
@@ -44,6 +45,16 @@ inline Mesh torus(double major, double minor, std::uint32_t around, std::uint32_
       mesh.triangles.push_back({id(i, k), id(i + 1, k), id(i + 1, k + 1)});
       mesh.triangles.push_back({id(i, k), id(i + 1, k + 1), id(i, k + 1)});
     }
+  return mesh;
+}
+
+// Each vertex off by normal noise per axis.
+inline Mesh shaken(Mesh mesh, double sigma_m) {
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    RandomStream random(1, 0, i);
+    const double x = random.normal(), y = random.normal(), z = random.normal();
+    mesh.vertices[i] += sigma_m * Eigen::Vector3d(x, y, z);
+  }
   return mesh;
 }
 

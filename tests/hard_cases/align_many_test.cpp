@@ -21,16 +21,11 @@ TEST(HardPath, ThreeHundredScansInARowStayTied) {
   for (const ScanPose& scan : result.scans)
     tied += scan.stop == Stop::converged || scan.stop == Stop::degenerate;
   EXPECT_EQ(tied, scans);
-  double sum = 0, links = 0;
-  for (const ScanEdge& edge : result.edges)
-    if (edge.target == edge.source + 1 && edge.accepted && edge.stop == Stop::converged) {
-      sum += test::normalised_link_error2(result, path.truth, edge) / 6;
-      ++links;
-    }
-  EXPECT_GT(links, 0.9 * scans);
+  const test::LinkErrors errors = test::link_errors(result, path.truth);
+  EXPECT_GT(errors.links, 0.9 * scans);
   // A mean of chi-squares over six degrees of freedom has a standard error of sqrt(2 / 6 / 270)
   // = 0.035; a tenth of bias is what calibration allows a pair.
-  EXPECT_LT(sum / links, 1 + 0.1 + 3 * 0.035);
+  EXPECT_LT(errors.mean, 1 + 0.1 + 3 * 0.035);
 }
 
 // What the errors of 36 pairs leave open when they are chained around a full turn, as far as a

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "libscan/core/error.h"
-#include "libscan/reconstruct/distance_bound.h"
 #include "libscan/reconstruct/ssd.h"
 #include "libscan/reconstruct/trim.h"
+#include "libscan/search/hausdorff.h"
 #include "tests/reconstruct/shapes.h"
 
 namespace scan {
@@ -27,7 +27,8 @@ TEST(Decimate, StaysWithinItsToleranceWithFewTriangles) {
   EXPECT_EQ(report.triangles_before, torus().surface.triangles.size());
   EXPECT_LT(result.surface.triangles.size(), 3000u);
   EXPECT_LE(report.bound_m, 0.01);
-  EXPECT_TRUE(two_sided_bound(result.surface, torus().surface, 0.01));
+  EXPECT_LE(hausdorff_distance(result.surface, torus().surface).low_m, 0.01);
+  EXPECT_LE(hausdorff_distance(result.surface, torus().surface, {.limit_m = 0.01}).high_m, 0.01);
   const EdgeCensus census = edge_census(result.surface);
   EXPECT_TRUE(census.watertight);
   EXPECT_EQ(census.non_manifold_vertices, 0u);
@@ -53,7 +54,7 @@ TEST(Decimate, KeepsAnOpenRim) {
   const EdgeCensus census = edge_census(result.surface);
   EXPECT_GT(census.boundary_edges, 0u);
   EXPECT_EQ(census.non_manifold_edges, 0u);
-  EXPECT_TRUE(two_sided_bound(result.surface, before, 0.01));
+  EXPECT_LE(hausdorff_distance(result.surface, before, {.limit_m = 0.01}).high_m, 0.01);
 }
 
 TEST(Decimate, RefusesNoTolerance) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -57,6 +58,29 @@ TEST(FollowedSurface, IsManifoldOnARandomField) {
   const EdgeCensus census = edge_census(mesh);
   EXPECT_TRUE(census.watertight);
   EXPECT_EQ(census.non_manifold_vertices, 0u);
+}
+
+// The eighth of a ball, six cells wide, in the far corner: there places have the largest numbers.
+// Vertices are found to 1e-5 of the larger value at an edge's ends, which is below a cell.
+TEST(FollowedSurface, ReachesTheFarWallsOfTheFinestCells) {
+  const double cell = std::ldexp(1.0, -20), radius = 5.8 * cell;
+  const std::vector<Eigen::Vector3d> seed{{1 - radius, 1, 1}};
+  const auto eighth = [&](const Eigen::Vector3d& u) {
+    return (u - Eigen::Vector3d::Ones()).norm() - radius;
+  };
+  const Mesh mesh = followed_surface(seed, 20, eighth);
+  for (const auto& v : mesh.vertices) EXPECT_NEAR(eighth(v), 0, 1.1e-5 * cell);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_TRUE(std::any_of(mesh.vertices.begin(), mesh.vertices.end(),
+                            [&](const auto& v) { return v[axis] == 1; }));
+  const EdgeCensus census = edge_census(mesh);
+  EXPECT_EQ(census.components, 1u);
+  EXPECT_EQ(census.non_manifold_edges, 0u);
+  // Facets whose corners lie within a cell of their middle lose up to (1 / 5.8)^2 / 4 of a sphere's
+  // area, and chords along the walls as much again: 1.5 %.
+  const double expected = std::numbers::pi / 2 * radius * radius;
+  EXPECT_NEAR(area_m2(mesh), expected, 0.015 * expected);
+  EXPECT_THROW(followed_surface(seed, 21, eighth), Error);
 }
 
 TEST(FollowedSurface, RefusesTooManyCells) {
