@@ -9,6 +9,17 @@ namespace scan {
 
 inline constexpr int cube_width = block_cell_functions;
 
+inline constexpr int cube_size = cube_width * cube_width * cube_width;
+
+inline BlockPlace cell_at(const Eigen::Vector3d& u, int cells) {
+  return {cell_of(u[0], cells), cell_of(u[1], cells), cell_of(u[2], cells)};
+}
+
+// Of a cell's functions in its block's cube.
+inline int cube_corner(const BlockPlace& cell) {
+  return cell[0] % 4 + cube_width * (cell[1] % 4 + cube_width * (cell[2] % 4));
+}
+
 struct CellWeights {
   SplineWeights x, y, z;
 };

@@ -12,73 +12,9 @@
 namespace scan {
 namespace {
 
-constexpr int cube_size = cube_width * cube_width * cube_width;
 constexpr std::size_t buckets_per_task = 4;
 
-BlockPlace cell_at(const Eigen::Vector3d& u, int cells) {
-  return {cell_of(u[0], cells), cell_of(u[1], cells), cell_of(u[2], cells)};
-}
-
-// Of a cell's functions in its block's cube.
-int cube_corner(const BlockPlace& cell) {
-  return cell[0] % 4 + cube_width * (cell[1] % 4 + cube_width * (cell[2] % 4));
-}
-
-using CellMatrix = Eigen::Matrix<double, 27, 27>;
-
-void add_outer_products(const Eigen::Vector3d& in_cell, double value_factor, double slope_factor,
-                        CellMatrix& sum) {
-  const CellWeights w = weights_at(in_cell);
-  Eigen::Matrix<double, 27, 4> rows;
-  for (int i = 0; i < 27; ++i) {
-    const int a = i % 3, b = i / 3 % 3, c = i / 9;
-    rows(i, 0) = std::sqrt(value_factor) * w.x.value[a] * w.y.value[b] * w.z.value[c];
-    rows(i, 1) = std::sqrt(slope_factor) * w.x.slope[a] * w.y.value[b] * w.z.value[c];
-    rows(i, 2) = std::sqrt(slope_factor) * w.x.value[a] * w.y.slope[b] * w.z.value[c];
-    rows(i, 3) = std::sqrt(slope_factor) * w.x.value[a] * w.y.value[b] * w.z.slope[c];
-  }
-  for (int k = 0; k < 4; ++k)
-    for (int j = 0; j < 27; ++j) sum.col(j) += rows(j, k) * rows.col(k);
-}
-
-// Where the 27 functions of a cell lie among all functions of the level.
-std::array<Eigen::Index, 27> cell_functions(const BlockLevel& level, std::size_t block,
-                                            int corner) {
-  std::array<Eigen::Index, 27> at;
-  for (int i = 0; i < 27; ++i) {
-    const int x = corner % cube_width + i % 3, y = corner / cube_width % cube_width + i / 3 % 3,
-              z = corner / (cube_width * cube_width) + i / 9;
-    const std::int32_t owner =
-        level.neighbours[block][neighbour_slot(x / block_width, y / block_width, z / block_width)];
-    at[i] = Eigen::Index{owner} * block_size +
-            slot_in_block(x % block_width, y % block_width, z % block_width);
-  }
-  return at;
-}
-
 }  // namespace
-
-void add_sample_diagonal(const BlockLevel& level, const Samples& samples,
-                         const SampleWeights& weights, std::span<const std::uint32_t> chosen,
-                         std::vector<double>& sum) {
-  const auto square = [](double x) { return x * x; };
-  const double cells = level.cells();
-  for (const std::uint32_t i : chosen) {
-    const BlockPlace cell = cell_at(samples.points[i], level.cells());
-    const std::int32_t block = level.find({cell[0] / 4, cell[1] / 4, cell[2] / 4});
-    const CellWeights w =
-        weights_at(samples.points[i] * cells - Eigen::Vector3d(cell[0], cell[1], cell[2]));
-    const std::array<Eigen::Index, 27> at = cell_functions(level, block, cube_corner(cell));
-    for (int k = 0; k < 27; ++k) {
-      const int a = k % 3, b = k / 3 % 3, c = k / 9;
-      const double value = square(w.x.value[a] * w.y.value[b] * w.z.value[c]);
-      const double slope = square(w.x.slope[a] * w.y.value[b] * w.z.value[c]) +
-                           square(w.x.value[a] * w.y.slope[b] * w.z.value[c]) +
-                           square(w.x.value[a] * w.y.value[b] * w.z.slope[c]);
-      sum[at[k]] += weights.value[i] * value + weights.gradient[i] * cells * cells * slope;
-    }
-  }
-}
 
 SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
                        const SampleWeights& weights, std::span<const std::uint32_t> chosen)
@@ -177,23 +113,6 @@ void SampleTerm::add_right_side(const BlockLevel& level, std::vector<double>& su
                   sample.gradient_weight * cells_ * sample.normal});
     }
   });
-}
-
-void SampleTerm::add_matrix(const BlockLevel& level, std::span<const std::int32_t> row_of,
-                            Eigen::MatrixXd& matrix) const {
-  for (std::size_t bucket = 0; bucket < bucket_block_.size(); ++bucket) {
-    // One small matrix per cell (samples of a cell follow each other), then to its place.
-    for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1];) {
-      const int corner = placed_[i].corner;
-      CellMatrix sum = CellMatrix::Zero();
-      for (; i < bucket_begin_[bucket + 1] && placed_[i].corner == corner; ++i)
-        add_outer_products(placed_[i].in_cell, placed_[i].value_weight,
-                           placed_[i].gradient_weight * cells_ * cells_, sum);
-      const std::array<Eigen::Index, 27> at = cell_functions(level, bucket_block_[bucket], corner);
-      for (int b = 0; b < 27; ++b)
-        for (int a = 0; a < 27; ++a) matrix(row_of[at[a]], row_of[at[b]]) += sum(a, b);
-    }
-  }
 }
 
 void SampleTerm::write_residuals(const BlockLevel& level, const std::vector<double>& u,

@@ -17,11 +17,6 @@ struct SampleWeights {
   std::vector<double> gradient;
 };
 
-// sum += diagonal of the matrix of the chosen samples' term.
-void add_sample_diagonal(const BlockLevel& level, const Samples& samples,
-                         const SampleWeights& weights, std::span<const std::uint32_t> chosen,
-                         std::vector<double>& sum);
-
 // Samples are kept by the block of their cell; each block's sums go to a buffer of its own, and the
 // blocks around fetch them from there, so nothing depends on the order of threads.
 class SampleTerm {
@@ -37,10 +32,6 @@ class SampleTerm {
                    std::vector<double>& sum) const;
   // sum += v f0 B + g n . grad B.
   void add_right_side(const BlockLevel& level, std::vector<double>& sum) const;
-  // matrix += the term's matrix, dense; for a level whose blocks are all active. `row_of`: row of
-  // each of the level's functions that lies in the cube.
-  void add_matrix(const BlockLevel& level, std::span<const std::int32_t> row_of,
-                  Eigen::MatrixXd& matrix) const;
   // Of each sample on this level: f / |grad f|.
   void write_residuals(const BlockLevel& level, const std::vector<double>& u,
                        std::vector<double>& residuals) const;

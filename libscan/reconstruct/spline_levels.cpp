@@ -179,14 +179,16 @@ void BendingStencil::add(const BlockLevel& level, const std::vector<double>& val
               factor * inverse_cell_, sum);
 }
 
-double BendingStencil::diagonal(const BlockPlace& place, int slot) const {
+double BendingStencil::entry(const BlockPlace& place, int slot, int tap_x, int tap_y,
+                             int tap_z) const {
   const StencilRow& x = rows_[place[0] * block_width + slot % 4];
   const StencilRow& y = rows_[place[1] * block_width + slot / 4 % 4];
   const StencilRow& z = rows_[place[2] * block_width + slot / 16];
-  const double mx = x.mass[2], my = y.mass[2], mz = z.mass[2];
-  const double kx = x.stiffness[2], ky = y.stiffness[2], kz = z.stiffness[2];
-  return inverse_cell_ * (x.bending[2] * my * mz + mx * y.bending[2] * mz + mx * my * z.bending[2] +
-                          2 * (kx * ky * mz + kx * my * kz + mx * ky * kz));
+  const double mx = x.mass[tap_x], my = y.mass[tap_y], mz = z.mass[tap_z];
+  const double kx = x.stiffness[tap_x], ky = y.stiffness[tap_y], kz = z.stiffness[tap_z];
+  return inverse_cell_ *
+         (x.bending[tap_x] * my * mz + mx * y.bending[tap_y] * mz + mx * my * z.bending[tap_z] +
+          2 * (kx * ky * mz + kx * my * kz + mx * ky * kz));
 }
 
 }  // namespace scan

@@ -42,12 +42,35 @@ class BendingStencil {
   explicit BendingStencil(int depth);
   void add(const BlockLevel& level, const std::vector<double>& values, std::size_t block,
            double factor, double* sum) const;
-  double diagonal(const BlockPlace& place, int slot) const;
+  double diagonal(const BlockPlace& place, int slot) const { return entry(place, slot, 2, 2, 2); }
+  // Calls visit(function, entry) along the row of S of a function of an active block.
+  template <class Visit>
+  void for_row(const BlockLevel& level, std::size_t function, Visit&& visit) const;
 
  private:
+  // Of a function and that at `tap` - 2 from it on each axis.
+  double entry(const BlockPlace& place, int slot, int tap_x, int tap_y, int tap_z) const;
+
   double inverse_cell_;
   std::vector<StencilRow> rows_;
   std::vector<AxisStencil> axis_of_block_;
 };
+
+template <class Visit>
+void BendingStencil::for_row(const BlockLevel& level, std::size_t function, Visit&& visit) const {
+  const std::size_t block = function / block_size;
+  const int slot = static_cast<int>(function % block_size);
+  for (int tap = 0; tap < 125; ++tap) {
+    // From the first function of the block before.
+    const int x = slot % 4 + tap % 5 + 2, y = slot / 4 % 4 + tap / 5 % 5 + 2,
+              z = slot / 16 + tap / 25 + 2;
+    const std::int32_t owner =
+        level.neighbours[block][neighbour_slot(x / 4 - 1, y / 4 - 1, z / 4 - 1)];
+    if (owner >= 0)
+      visit(static_cast<std::size_t>(owner) * block_size +
+                static_cast<std::size_t>(slot_in_block(x % 4, y % 4, z % 4)),
+            entry(level.blocks[block], slot, tap % 5, tap / 5 % 5, tap / 25));
+  }
+}
 
 }  // namespace scan

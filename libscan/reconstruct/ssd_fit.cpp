@@ -72,12 +72,17 @@ class Fit {
     for (std::size_t l = 0; l < levels_ || length_at(l - 1) > 1.2 * options_.length; ++l) {
       report(progress, l);
       const double trial = std::max(length_at(l), options_.length);
+      const bool coarse = l + 1 < levels_;
       if (l < levels_) system_.use_levels(l);
+      const LevelArrays before = coarse ? LevelArrays{} : coefficients();
       solve(even(trial), trial_residual);
       const std::vector<double> residuals = system_.residuals(coefficients());
       distrust(residuals, trial);
       const double lowered = smoothing_.judge(trial, residuals, trust_);
-      if (l + 1 >= levels_ && lowered < least_share_lowered) break;
+      if (!coarse && lowered < least_share_lowered) {
+        coefficients() = before;  // of the length that most samples keep: a start nearer to the end
+        break;
+      }
     }
     result_.length = smoothing_.lengths();
   }

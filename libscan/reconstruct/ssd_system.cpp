@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "libscan/core/parallel.h"
+#include "libscan/reconstruct/sample_matrix.h"
+#include "libscan/search/batch.h"
 
 namespace scan {
 
@@ -13,6 +15,7 @@ SsdSystem::SsdSystem(const OctreeGrid& grid, const Samples& samples, SampleWeigh
     : grid_(grid),
       samples_(samples),
       depths_(depths_seen(grid, samples.points)),
+      order_(curve_order(samples.points)),
       weights_(std::move(weights)),
       terms_(grid.levels.size()) {
   for (const BlockLevel& level : grid.levels) {
@@ -84,7 +87,7 @@ LevelArrays SsdSystem::diagonal() const {
   const auto of_level = [&](std::size_t l) {
     const BlockLevel& level = grid_.levels[l];
     std::vector<std::uint32_t> chosen;  // a level's functions meet the samples of finer levels too
-    for (std::uint32_t i = 0; i < depths_.size(); ++i)
+    for (const std::uint32_t i : order_)
       if (depths_[i] >= level.depth) chosen.push_back(i);
     std::vector<double> sum(level.blocks.size() * block_size, 0.0);
     add_sample_diagonal(level, samples_, weights_, chosen, sum);
@@ -116,26 +119,16 @@ std::vector<std::uint32_t> SsdSystem::coarsest_functions() const {
 Eigen::MatrixXd SsdSystem::coarsest_matrix() const {
   const BlockLevel& level = grid_.levels.front();
   const std::vector<std::uint32_t> functions = coarsest_functions();
-  const std::size_t size = functions.size(), all_functions = level.active * block_size;
-  std::vector<std::int32_t> row_of(all_functions, -1);
+  const std::size_t size = functions.size();
+  std::vector<std::int32_t> row_of(level.active * block_size, -1);
   for (std::size_t row = 0; row < size; ++row)
     row_of[functions[row]] = static_cast<std::int32_t>(row);
-  std::vector<std::uint32_t> all(depths_.size());
-  std::iota(all.begin(), all.end(), 0u);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
-  SampleTerm(level, samples_, weights_, all).add_matrix(level, row_of, matrix);
-  parallel_for(
-      size,
-      [&](std::size_t column) {
-        std::vector<double> unit(all_functions, 0.0), sum(all_functions, 0.0);
-        unit[functions[column]] = 1;
-        for (const std::int32_t b : level.neighbours[functions[column] / block_size])
-          if (b >= 0)
-            bending_[0].add(level, unit, b, 1,
-                            sum.data() + std::size_t{static_cast<std::uint32_t>(b)} * block_size);
-        for (std::size_t row = 0; row < size; ++row) matrix(row, column) += sum[functions[row]];
-      },
-      16);
+  add_sample_matrix(level, samples_, weights_, order_, row_of, matrix);
+  for (std::size_t row = 0; row < size; ++row)
+    bending_[0].for_row(level, functions[row], [&](std::size_t function, double entry) {
+      if (row_of[function] >= 0) matrix(row_of[function], row) += entry;  // it is symmetric
+    });
   return matrix;
 }
 

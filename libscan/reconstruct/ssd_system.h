@@ -45,6 +45,7 @@ class SsdSystem {
   const OctreeGrid& grid_;
   const Samples& samples_;
   std::vector<int> depths_;
+  std::vector<std::uint32_t> order_;  // of the samples, along a curve that fills space
   SampleWeights weights_;
   std::size_t finest_ = 0;
   std::vector<BendingStencil> bending_;
