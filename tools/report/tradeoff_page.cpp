@@ -74,9 +74,8 @@ std::set<std::string> stages_of(const ordered_json& runs) {
   return stages;
 }
 
-std::string heads(const ordered_json& runs, bool has_cases) {
+std::string heads(const ordered_json& runs) {
   std::string html = "<h3>Settings</h3><div class=\"wide\"><table><tr>";
-  if (has_cases) html += "<th>case</th>";
   for (const auto& [key, value] : runs.at(0).at("settings").items())
     html += "<th>" + escaped(key) + "</th>";
   for (const char* number : {"error", "least", "most", "runs"})
@@ -95,15 +94,20 @@ double peak_mib(const ordered_json& run) {
 
 std::string run_table(const ordered_json& tradeoff, const std::string& unit) {
   const ordered_json& runs = tradeoff.at("runs");
-  const bool has_cases = tradeoff.at("cases").size() > 1;
   const std::set<std::string> stages = stages_of(runs);
   const auto error = [&](const ordered_json& value) {
     return value.is_number() ? readable_value(value.get<double>(), unit) : "unknown";
   };
-  std::string html = heads(runs, has_cases);
+  std::string html = heads(runs);
+  const std::size_t columns = runs.at(0).at("settings").size() + stages.size() + 6;
+  ordered_json in = "";
   for (const auto& run : runs) {
+    if (run.at("case") != in) {
+      in = run.at("case");
+      html += "<tr><th scope=\"rowgroup\" colspan=\"" + std::to_string(columns) + "\">" +
+              escaped(in.get<std::string>()) + "</th></tr>";
+    }
     html += "<tr>";
-    if (has_cases) html += cell(run.at("case").get<std::string>());
     for (const auto& [key, value] : run.at("settings").items()) html += cell(text_of(value));
     html += cell(error(run.at("error_m")), true) + cell(error(run.at("least_error")), true) +
             cell(error(run.at("most_error")), true) +
