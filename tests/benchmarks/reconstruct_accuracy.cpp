@@ -7,18 +7,17 @@
 //
 // Names may end in *. Each run has a process of its own, so that its memory is its own and a peer
 // that dies leaves only its own row empty.
-#include <malloc.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <numbers>
 #include <sstream>
 
+#include "libscan/core/cost.h"
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
 #include "libscan/reconstruct/reconstruct.h"
@@ -91,18 +90,6 @@ bool matches(const std::string& patterns, const std::string& name) {
   return false;
 }
 
-void forget_peak_memory() {
-  malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): resets the high water mark
-}
-
-double peak_mib() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with("VmHWM:")) return std::strtod(line.c_str() + 6, nullptr) / 1024;
-  return std::nan("");
-}
-
 std::map<std::string, double> figures(const Mesh& mesh, const TrueSurface& truth) {
   std::map<std::string, double> values;
   for (const Measurement& m : surface_error(mesh, truth, {.samples = 100'000}))
@@ -117,10 +104,10 @@ double genus_of(const EdgeCensus& census) {
 }
 
 void print_row(const ReconstructInput& input, const Method& method) {
-  forget_peak_memory();
+  restart_peak_memory();
   const Stopwatch watch;
   const Mesh mesh = method.surface(input);
-  const double seconds = watch.seconds(), memory_mib = peak_mib();
+  const double seconds = watch.seconds(), memory_mib = peak_memory_mib();
   if (mesh.empty()) throw Error(Trouble::computation, "no surface");
   const auto values = figures(mesh, input.truth);
   const EdgeCensus census = edge_census(mesh);
