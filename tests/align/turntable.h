@@ -16,7 +16,8 @@ struct Turntable {
   std::vector<Pose> truth, guesses;
 };
 
-// `count` views around z, each of the half that faces it, with points of its own, so many all round.
+// `count` views around z, each of the half that faces it, with points of its own, so many all
+// round.
 inline Turntable turntable(int count, double sigma_m, std::size_t points = 12000) {
   Turntable t;
   for (int i = 0; i < count; ++i) {
