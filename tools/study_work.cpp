@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "libscan/core/error.h"
+#include "libscan/core/parallel.h"
 
 namespace scan {
 namespace {
@@ -69,7 +70,12 @@ StudyWork::StudyWork(const std::string& recipe, const fs::path& out, Console& co
   recipe_.erase("tradeoff");
   for (const Case& in : study_.cases)
     for (const Setting& setting : grid(study_)) {
-      const Recipe checked = runs_.read(with_setting(recipe_, study_, in, setting));
+      const StudyRecipe given = with_setting(recipe_, study_, in, setting);
+      if (given.threads > thread_count())
+        throw Error(Trouble::input, recipe +
+                                        "/tradeoff: threads: " + std::to_string(given.threads) +
+                                        ", here are at most " + std::to_string(thread_count()));
+      const Recipe checked = runs_.read(given);
       seed_ = checked.seed;
       name_ = checked.name;
       ++total_;

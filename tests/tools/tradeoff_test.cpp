@@ -128,6 +128,8 @@ TEST(Tradeoff, NamesWhatIsWrongWithItsRecipe) {
                      "error": "accuracy_rmz"})")
                 .find("accuracy_rmz"),
             std::string::npos);
+  EXPECT_NE(said(R"({"vary": [{"key": "threads", "values": [1, 100000]}]})").find("100000"),
+            std::string::npos);
 }
 
 // A scanner that sees nothing within its range: each run fails, and the first reason is given.

@@ -188,9 +188,8 @@ std::string tradeoff_plot(const std::vector<TradeoffMark>& all, const TradeoffLa
     svg += frame(x, y, labels, panels[i]) + panel(inside, curves, x, y, tolerance);
   }
   double bottom = 0;
-  const double below =
-      height * static_cast<double>((panels.size() + (is_single ? 0 : 1)) / (is_single ? 1 : 2));
-  svg += legend(curves, below, bottom);
+  const std::size_t in_row = is_single ? 1 : 2, rows = (panels.size() + in_row - 1) / in_row;
+  svg += legend(curves, height * static_cast<double>(rows), bottom);
   return print(
              "<svg class='plot' xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %g %.0f' "
              "role='img' "
