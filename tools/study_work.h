@@ -35,7 +35,9 @@ class StudyWork {
   StudyPoint measure(const Case& in, const Setting& setting, int seeds);
 
   // What the setting's error consists of, by sparing the runs one source after another: the poses'
-  // errors, miscalibration, effects, noise; the rest is the surface's own. Empty if a run fails.
+  // errors, miscalibration, effects, noise; the rest is the surface's own. Of a pose's error the
+  // rest is registration, of a range's the decoding. Sources that changed no run are left out.
+  // Empty if a run fails.
   std::vector<ErrorSource> sources(const Case& in, const Setting& setting);
 
  private:
