@@ -123,10 +123,12 @@ StudyPoint StudyWork::measure(const Case& in, const Setting& setting, int seeds)
   for (int i = 0; i < seeds; ++i) {
     const RunOutcome outcome = run(in, setting, i, {});
     ++point.runs;
+    point.errors.push_back(outcome.error);
+    point.seed_seconds.push_back(seconds_of(study_, outcome.stages));
     point.error += outcome.error / seeds;
     point.least_error = std::min(point.least_error, outcome.error);
     point.most_error = std::max(point.most_error, outcome.error);
-    point.seconds += seconds_of(study_, outcome.stages) / seeds;
+    point.seconds += point.seed_seconds.back() / seeds;
     for (const auto& [stage, cost] : outcome.stages) {
       point.stages[stage].seconds += cost.seconds / seeds;
       point.stages[stage].peak_mib = std::max(point.stages[stage].peak_mib, cost.peak_mib);
@@ -158,10 +160,12 @@ std::vector<ErrorSource> StudyWork::sources(const Case& in, const Setting& setti
 }
 
 RunOutcome StudyWork::run(const Case& in, const Setting& setting, int seed, const Spared& spared) {
+  const std::string name = run_name(study_, in, setting, seed, spared);
+  if (const auto found = outcomes_.find(name); found != outcomes_.end()) return found->second;
   const std::uint64_t run_seed = seed_ + static_cast<std::uint64_t>(seed);
   const RunOutcome outcome =
-      runs_.run(run_name(study_, in, setting, seed, spared),
-                with_setting(recipe_, study_, in, setting), run_seed, study_.error, spared);
+      runs_.run(name, with_setting(recipe_, study_, in, setting), run_seed, study_.error, spared);
+  outcomes_[name] = outcome;
   ++done_;
   console_.log(
       "run " + std::to_string(done_) + ": " + (in.name.empty() ? "" : in.name + ": ") +

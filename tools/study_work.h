@@ -4,6 +4,7 @@
 // from.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -51,6 +52,7 @@ class StudyWork {
   std::uint64_t seed_ = 1;
   std::string name_;
   StudyRuns runs_;
+  std::map<std::string, RunOutcome> outcomes_;  // by the run's name
   std::size_t done_ = 0, total_ = 0;
   Stopwatch watch_;
 };
