@@ -11,9 +11,8 @@
 #include <embree3/rtcore.h>
 
 #include <cmath>
-#include <cstdio>
-#include <map>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <string>
 
