@@ -21,6 +21,7 @@ struct Arguments {
   std::string method = "ssd";
   std::string poses;
   long depth = SsdOptions{}.depth;
+  double memory_gib = SsdOptions{}.memory_gib;
   bool sharp = false;
   double trim_m = 0;
   double decimate_m = 0;
@@ -52,6 +53,7 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   settings.method = static_cast<ReconstructMethod>(
       std::find(names.begin(), names.end(), arguments.method) - names.begin());
   settings.ssd.depth = static_cast<int>(arguments.depth);
+  settings.ssd.memory_gib = arguments.memory_gib;
   settings.sharp = arguments.sharp;
   settings.trim_m = arguments.trim_m;
   settings.decimate_m = arguments.decimate_m;
@@ -84,6 +86,11 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
     console.say("depth " + std::to_string(result.depth) + ", points scatter by " +
                 readable_length(result.sigma_m) + ", smoothing length " +
                 readable_length(result.smoothing_length_m));
+  if (result.parts.parts_per_axis > 1)
+    console.say("solved in parts, " + std::to_string(result.parts.parts_per_axis) +
+                " an axis; where two meet their surfaces are " +
+                readable_length(result.parts.seam_rms_m) + " rms apart, at most " +
+                readable_length(result.parts.seam_largest_m));
   console.finish("reconstruct", "ok", json);
   return 0;
 }
@@ -96,6 +103,8 @@ Action reconstruct_command(CommandLine& line) {
   line.choice("--method", arguments->method, reconstruct_method_names(), "how the surface is made");
   line.whole("--depth", arguments->depth, 3, 12,
              "ssd: most; cells are not narrower than box / 2^depth");
+  line.number("--memory", arguments->memory_gib, 0.01, 1e4,
+              "ssd: most, GiB; what needs more is solved part by part and blended");
   line.option("--poses", arguments->poses, "a pose for each input, in their order");
   line.flag("--sharp", arguments->sharp, "put edges and corners back; for points of little noise");
   line.length("--trim", arguments->trim_m, "remove surface farther than this from every point");

@@ -112,6 +112,34 @@ bool is_empty(const SplineField& field, const FieldCell& cell) {
   return !may_hold_zero(cell) && !has_finer_functions(field, cell);
 }
 
+// Shares are not negative: where all fields have the same sign, so has their blend.
+bool is_empty(const BlendedField& field, const BlendedCell& cell) {
+  const bool inside = cell.members.front().cell.coefficients[0] < 0;
+  return std::all_of(cell.members.begin(), cell.members.end(), [&](const auto& member) {
+    return (member.cell.coefficients[0] < 0) == inside &&
+           is_empty(field.fields[member.field], member.cell);
+  });
+}
+
+FieldCell blended(const SplineField&, const FieldCell& cell) {
+  return cell;
+}
+
+template <class Field, class Cell>
+void collect_crossed(const Field& field, const Cell& cell, int depth, CrossedCells& crossed) {
+  if (cell.depth == depth) {
+    const FieldCell here = blended(field, cell);
+    if (!may_hold_zero(here)) return;
+    const std::array<double, 8> values = corner_values(here);
+    const auto inside = std::count_if(values.begin(), values.end(), [](double v) { return v < 0; });
+    if (inside > 0 && inside < 8) add_crossed(here, values, crossed);
+    return;
+  }
+  if (is_empty(field, cell)) return;
+  for (int octant = 0; octant < 8; ++octant)
+    collect_crossed(field, child_cell(field, cell, octant), depth, crossed);
+}
+
 void collect_tasks(const SplineField& field, const FieldCell& cell, int depth,
                    std::vector<FieldCell>& tasks) {
   if (cell.depth == depth)
@@ -121,31 +149,28 @@ void collect_tasks(const SplineField& field, const FieldCell& cell, int depth,
       collect_tasks(field, child_cell(field, cell, octant), depth, tasks);
 }
 
-void collect_crossed(const SplineField& field, const FieldCell& cell, int depth,
-                     CrossedCells& crossed) {
-  if (cell.depth == depth) {
-    if (!may_hold_zero(cell)) return;
-    const std::array<double, 8> values = corner_values(cell);
-    const auto inside = std::count_if(values.begin(), values.end(), [](double v) { return v < 0; });
-    if (inside > 0 && inside < 8) add_crossed(cell, values, crossed);
-    return;
-  }
-  if (is_empty(field, cell)) return;
-  for (int octant = 0; octant < 8; ++octant)
-    collect_crossed(field, child_cell(field, cell, octant), depth, crossed);
-}
-
-}  // namespace
-
-CrossedCells crossed_cells(const SplineField& field, int depth) {
+std::vector<FieldCell> tasks_of(const SplineField& field, int depth) {
   std::vector<FieldCell> tasks;
   constexpr int side = 1 << coarsest_depth;
   for (int i = 0; i < side * side * side; ++i)
     collect_tasks(field, coarsest_cell(field, {i % side, i / side % side, i / side / side}),
                   std::min(depth, task_depth), tasks);
-  std::vector<CrossedCells> parts(tasks.size());
-  parallel_for(
-      tasks.size(), [&](std::size_t i) { collect_crossed(field, tasks[i], depth, parts[i]); }, 4);
+  return tasks;
+}
+
+std::vector<BlendedCell> tasks_of(const BlendedField& field, int depth) {
+  const int at = std::min(depth, std::max(task_depth, field.split));
+  const int side = 1 << at;
+  std::vector<BlendedCell> tasks;
+  for (int i = 0; i < side * side * side; ++i) {
+    BlendedCell task = cell_at_depth(field, {i % side, i / side % side, i / side / side}, at);
+    if (!is_empty(field, task)) tasks.push_back(std::move(task));
+  }
+  return tasks;
+}
+
+// Parts come in the order of their tasks.
+CrossedCells joined(std::vector<CrossedCells>& parts) {
   std::size_t count = 0;
   for (const CrossedCells& part : parts) count += part.cells.size();
   CrossedCells all;
@@ -162,6 +187,25 @@ CrossedCells crossed_cells(const SplineField& field, int depth) {
     return sort_key(a.place) < sort_key(b.place);
   });
   return all;
+}
+
+template <class Field>
+CrossedCells walk(const Field& field, int depth) {
+  const auto tasks = tasks_of(field, depth);
+  std::vector<CrossedCells> parts(tasks.size());
+  parallel_for(
+      tasks.size(), [&](std::size_t i) { collect_crossed(field, tasks[i], depth, parts[i]); }, 4);
+  return joined(parts);
+}
+
+}  // namespace
+
+CrossedCells crossed_cells(const SplineField& field, int depth) {
+  return walk(field, depth);
+}
+
+CrossedCells crossed_cells(const BlendedField& field, int depth) {
+  return walk(field, depth);
 }
 
 }  // namespace scan

@@ -3,8 +3,8 @@
 // The cells of one depth that a level set crosses, with what its mesh needs of them.
 #pragma once
 
+#include "libscan/reconstruct/blended_field.h"
 #include "libscan/reconstruct/cell_polygons.h"
-#include "libscan/reconstruct/spline_field.h"
 
 namespace scan {
 
@@ -38,5 +38,6 @@ inline bool needs_centre(int loop_size) {
 // splines are convex combinations. Edges at the lowest corner: along x, y, z they are edges 0, 4
 // and 8.
 CrossedCells crossed_cells(const SplineField& field, int depth);
+CrossedCells crossed_cells(const BlendedField& field, int depth);
 
 }  // namespace scan

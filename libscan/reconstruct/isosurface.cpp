@@ -27,8 +27,8 @@ void number_vertices(std::vector<CrossedCell>& cells, std::size_t& count) {
 
 class Polygonizer {
  public:
-  explicit Polygonizer(const SplineField& field, int depth)
-      : cell_size_(1.0 / (1 << depth)), crossed_(crossed_cells(field, depth)) {
+  Polygonizer(CrossedCells crossed, int depth)
+      : cell_size_(1.0 / (1 << depth)), crossed_(std::move(crossed)) {
     number_vertices(crossed_.cells, vertices_);
   }
 
@@ -128,7 +128,11 @@ class Polygonizer {
 }  // namespace
 
 Mesh zero_level_set(const SplineField& field, int depth) {
-  return Polygonizer(field, depth).mesh();
+  return Polygonizer(crossed_cells(field, depth), depth).mesh();
+}
+
+Mesh zero_level_set(const BlendedField& field, int depth) {
+  return Polygonizer(crossed_cells(field, depth), depth).mesh();
 }
 
 }  // namespace scan

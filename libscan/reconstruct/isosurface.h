@@ -4,7 +4,7 @@
 #pragma once
 
 #include "libscan/core/mesh.h"
-#include "libscan/reconstruct/spline_field.h"
+#include "libscan/reconstruct/blended_field.h"
 
 namespace scan {
 
@@ -14,5 +14,6 @@ namespace scan {
 // its ends, so that no triangle collapses. The unit cube's walls count as outside, which closes
 // the surface there. Vertices in unit-cube coordinates; inside is where the function is negative.
 Mesh zero_level_set(const SplineField& field, int depth);
+Mesh zero_level_set(const BlendedField& field, int depth);
 
 }  // namespace scan

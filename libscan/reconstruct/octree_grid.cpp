@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <string>
 
-#include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
 #include "libscan/core/point_cloud.h"
 
@@ -15,8 +13,6 @@ namespace scan {
 namespace {
 
 constexpr int bits_per_axis = 21;
-// Coefficients, residuals and work vectors (8 doubles a function) and the tables of a block.
-constexpr double bytes_per_block = 8 * 8 * block_size + 4 * 27 * 2 + 64;
 
 std::uint64_t key_of(const BlockPlace& place) {
   return (static_cast<std::uint64_t>(place[2]) << (2 * bits_per_axis)) |
@@ -94,6 +90,27 @@ BlockLevel make_level(int depth, const std::vector<std::uint64_t>& active) {
                       std::back_inserter(level.keys));
   for (const std::uint64_t key : level.keys) level.blocks.push_back(place_of(key));
   return level;
+}
+
+// Calls take(level) from the finest to the coarsest, not yet connected, until it returns false.
+template <class Take>
+void for_levels(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
+                int complete_depth, Take&& take) {
+  const int finest = std::max(complete_depth, *std::max_element(depths.begin(), depths.end()));
+  std::vector<std::uint64_t> finer;
+  for (int depth = finest; depth >= coarsest_depth; --depth) {
+    std::vector<std::uint64_t> active;
+    if (depth > complete_depth) {
+      active = keys_around_points(points, depths, depth);
+      add_parents(finer, active);
+    } else {
+      const int last = blocks_per_axis(depth) - 1;
+      add_range({0, 0, 0}, {last, last, last}, depth, active);
+      sort_unique(active);
+    }
+    if (!take(make_level(depth, active))) return;
+    finer = std::move(active);
+  }
 }
 
 // The blocks of `level` at `centre` + (-1,-1,-1) ... (1,1,1).
@@ -211,33 +228,24 @@ std::vector<int> depths_seen(const OctreeGrid& grid, std::span<const Eigen::Vect
 }
 
 OctreeGrid make_octree_grid(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
-                            int complete_depth, double limit_gib) {
-  const int finest = std::max(complete_depth, *std::max_element(depths.begin(), depths.end()));
+                            int complete_depth) {
   OctreeGrid grid;
-  grid.levels.resize(finest - coarsest_depth + 1);
-  std::vector<std::uint64_t> finer;
-  double bytes = 0;
-  for (int depth = finest; depth >= coarsest_depth; --depth) {
-    std::vector<std::uint64_t> active;
-    if (depth > complete_depth) {
-      active = keys_around_points(points, depths, depth);
-      add_parents(finer, active);
-    } else {
-      const int last = blocks_per_axis(depth) - 1;
-      add_range({0, 0, 0}, {last, last, last}, depth, active);
-      sort_unique(active);
-    }
-    grid.levels[depth - coarsest_depth] = make_level(depth, active);
-    bytes += bytes_per_block * static_cast<double>(grid.levels[depth - coarsest_depth].keys.size());
-    if (bytes > limit_gib * 1073741824.0)
-      throw Error(Trouble::resource,
-                  "octree: " + std::to_string(bytes / 1073741824.0) + " GiB at depth " +
-                      std::to_string(depth) + ", limit " + std::to_string(limit_gib) + " GiB",
-                  "use a smaller depth or thin the points");
-    finer = std::move(active);
-  }
+  for_levels(points, depths, complete_depth, [&](BlockLevel&& level) {
+    grid.levels.insert(grid.levels.begin(), std::move(level));
+    return true;
+  });
   connect(grid);
   return grid;
+}
+
+std::size_t octree_blocks(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
+                          int complete_depth, double enough) {
+  std::size_t blocks = 0;
+  for_levels(points, depths, complete_depth, [&](BlockLevel&& level) {
+    blocks += level.keys.size();
+    return static_cast<double>(blocks) <= enough;
+  });
+  return blocks;
 }
 
 }  // namespace scan

@@ -67,9 +67,12 @@ struct OctreeGrid {
 
 // Each point (in the unit cube) activates, on all levels to its own depth, the functions of its
 // cell and of a ring of one cell around it; levels to `complete_depth` are active as a whole.
-// Throws scan::Error (resource) if the levels would need more than `limit_gib`.
 OctreeGrid make_octree_grid(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
-                            int complete_depth, double limit_gib = 16);
+                            int complete_depth);
+
+// How many blocks, active and halo, such a grid has; counting stops above `enough`.
+std::size_t octree_blocks(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
+                          int complete_depth, double enough);
 
 // The finest depth at which any active function reaches each point: there a sample sees all of f.
 std::vector<int> depths_seen(const OctreeGrid& grid, std::span<const Eigen::Vector3d> points);

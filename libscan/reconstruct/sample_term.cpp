@@ -14,6 +14,15 @@ namespace {
 
 constexpr std::size_t buckets_per_task = 4;
 
+SplineWeights squares(const SplineWeights& w) {
+  SplineWeights result;
+  for (int a = 0; a < 3; ++a) {
+    result.value[a] = w.value[a] * w.value[a];
+    result.slope[a] = w.slope[a] * w.slope[a];
+  }
+  return result;
+}
+
 }  // namespace
 
 SampleTerm::SampleTerm(const BlockLevel& level, const Samples& samples,
@@ -100,6 +109,19 @@ void SampleTerm::add_product(const BlockLevel& level, const std::vector<double>&
       f.value *= sample.value_weight;
       f.slope *= sample.gradient_weight * cells_ * cells_;
       accumulate(buffer + sample.corner, w, f);
+    }
+  });
+}
+
+void SampleTerm::add_diagonal(const BlockLevel& level, std::vector<double>& sum) const {
+  scatter(level, sum, [&](std::size_t bucket, double* buffer) {
+    for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
+      const Placed& sample = placed_[i];
+      // Squares of products are products of squares.
+      const CellWeights w = weights_at(sample.in_cell);
+      accumulate(buffer + sample.corner, {squares(w.x), squares(w.y), squares(w.z)},
+                 {sample.value_weight,
+                  Eigen::Vector3d::Constant(sample.gradient_weight * cells_ * cells_)});
     }
   });
 }

@@ -30,6 +30,8 @@ class SampleTerm {
   // sum += (matrix of the term) u, on all blocks; `u` holds all blocks.
   void add_product(const BlockLevel& level, const std::vector<double>& u,
                    std::vector<double>& sum) const;
+  // sum += diagonal of that matrix.
+  void add_diagonal(const BlockLevel& level, std::vector<double>& sum) const;
   // sum += v f0 B + g n . grad B.
   void add_right_side(const BlockLevel& level, std::vector<double>& sum) const;
   // Of each sample on this level: f / |grad f|.

@@ -10,7 +10,7 @@
 #include "libscan/core/median.h"
 #include "libscan/reconstruct/isosurface.h"
 #include "libscan/reconstruct/local_smoothing.h"
-#include "libscan/reconstruct/ssd_fit.h"
+#include "libscan/reconstruct/ssd_parts.h"
 #include "libscan/reconstruct/support.h"
 #include "libscan/search/batch.h"
 #include "libscan/search/kd_tree.h"
@@ -63,6 +63,51 @@ std::size_t active_functions(const OctreeGrid& grid) {
   return count;
 }
 
+// One level below the solution, where the depth allows it: smaller facets on the same function.
+int surface_depth(int finest, const SsdOptions& options) {
+  return std::min(options.depth, finest + 1);
+}
+
+SurfaceResult at_once(const SsdProblem& problem, const SsdFitOptions& fit_options,
+                      const SsdOptions& options, const Progress& progress) {
+  const OctreeGrid grid =
+      make_octree_grid(problem.samples.points, problem.depths, problem.complete_depth);
+  const SsdFit fit = fit_surface(grid, problem.samples, fit_options, progress);
+  if (progress) progress("surface", 0);
+  const int depth = surface_depth(grid.finest_depth(), options);
+  SurfaceResult result = world_result(zero_level_set({grid, fit.solution.coefficients}, depth),
+                                      problem.samples, fit.length);
+  result.depth = grid.finest_depth();
+  result.smoothing_length_m = median(fit.length);
+  result.unknowns = active_functions(grid);
+  result.iterations = fit.solution.iterations;
+  result.relative_residual = fit.solution.relative_residual;
+  result.stop = fit.solution.stop;
+  return result;
+}
+
+SurfaceResult in_parts(const SsdProblem& problem, int split, const SsdFitOptions& fit_options,
+                       const SsdOptions& options, const Progress& progress) {
+  const SsdParts parts = fit_parts(problem, fit_options, split, progress);
+  if (progress) progress("surface", 0);
+  const int depth = surface_depth(parts.finest_depth, options);
+  SurfaceResult result =
+      world_result(zero_level_set(parts.field(), depth), problem.samples, parts.length);
+  const double side_m = problem.samples.box.side_m;
+  const SeamDeviation seams = seam_deviation(parts, problem.samples);
+  result.parts = {.parts_per_axis = std::size_t{1} << split,
+                  .seam_rms_m = side_m * seams.rms,
+                  .seam_largest_m = side_m * seams.largest,
+                  .seam_points = seams.samples};
+  result.depth = parts.finest_depth;
+  result.smoothing_length_m = median(parts.length);
+  result.unknowns = parts.unknowns;
+  result.iterations = parts.iterations;
+  result.relative_residual = parts.relative_residual;
+  result.stop = parts.stop;
+  return result;
+}
+
 }  // namespace
 
 void check(const SsdOptions& options) {
@@ -72,6 +117,8 @@ void check(const SsdOptions& options) {
           "at least 0");
   require(options.relative_residual >= 0 && options.relative_residual < 1, "relative_residual",
           options.relative_residual, "0 to below 1");
+  require(options.memory_gib > 0 && std::isfinite(options.memory_gib), "memory_gib",
+          options.memory_gib, "above 0");
   require(options.max_iterations > 0, "max_iterations", options.max_iterations, "above 0");
 }
 
@@ -82,25 +129,16 @@ SurfaceResult ssd(const PointCloud& cloud, const SsdOptions& options, const Prog
   const int complete_depth = std::min(most_complete_depth, options.depth);
   const std::vector<int> depths = sample_depths(samples, complete_depth, options.depth);
   if (progress) progress("octree", 0);
-  const OctreeGrid grid = make_octree_grid(samples.points, depths, complete_depth);
-  const SsdFit fit = fit_surface(grid, samples,
-                                 {.length = options.smoothing_length_m / samples.box.side_m,
+  const SsdProblem problem{samples, depths, complete_depth};
+  const SsdFitOptions fit_options{.length = options.smoothing_length_m / samples.box.side_m,
                                   .relative_residual = options.relative_residual,
-                                  .max_iterations = options.max_iterations},
-                                 progress);
-  if (progress) progress("surface", 0);
-  // One level below the solution, where the depth allows it: smaller facets on the same function.
-  const int surface_depth = std::min(options.depth, grid.finest_depth() + 1);
-  SurfaceResult result = world_result(
-      zero_level_set({grid, fit.solution.coefficients}, surface_depth), samples, fit.length);
-  result.finest_cell_m = samples.box.side_m / (1 << surface_depth);
-  result.depth = grid.finest_depth();
+                                  .max_iterations = options.max_iterations};
+  const int split = needed_split(problem, options.memory_gib);
+  SurfaceResult result = split == 0 ? at_once(problem, fit_options, options, progress)
+                                    : in_parts(problem, split, fit_options, options, progress);
+  result.finest_cell_m = samples.box.side_m / (1 << surface_depth(result.depth, options));
   result.sigma_m = samples.box.side_m * median(samples.sigma);
-  result.smoothing_length_m = samples.box.side_m * median(fit.length);
-  result.unknowns = active_functions(grid);
-  result.iterations = fit.solution.iterations;
-  result.relative_residual = fit.solution.relative_residual;
-  result.stop = fit.solution.stop;
+  result.smoothing_length_m *= samples.box.side_m;
   result.invalid_points = samples.invalid_points;
   result.outlying_points = samples.outlying_points;
   result.cost.seconds = watch.seconds();

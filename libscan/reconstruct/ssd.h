@@ -14,7 +14,8 @@ struct SsdOptions {
   double sigma_m = 0;             // scatter of points that do not carry their own
   double smoothing_length_m = 0;  // least; ripples of 2 pi times this length are halved
   double relative_residual = 0;   // of the energy norm, see SsdSolution
-  int max_iterations = 2000;
+  int max_iterations = 2000;      // of a part
+  double memory_gib = 16;         // most; what needs more is solved in parts (ssd_parts.h)
 };
 void check(const SsdOptions& options);
 
@@ -26,8 +27,8 @@ void check(const SsdOptions& options);
 //
 // Points that are not finite or have no normal are left out and counted, so are those far from all
 // others. Throws scan::Error: usage for options outside their limits, input for fewer than 16 valid
-// points or a cloud without extent, computation if no surface crosses the box, resource if the
-// octree would need more than 16 GiB.
+// points or a cloud without extent, computation if no surface crosses the box, resource if even
+// parts would need more memory than allowed: before any of it is taken.
 SurfaceResult ssd(const PointCloud& cloud, const SsdOptions& options = {},
                   const Progress& progress = {});
 

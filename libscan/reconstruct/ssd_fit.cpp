@@ -182,18 +182,21 @@ std::vector<double> trust(const Samples& samples, const std::vector<double>& res
   return trust;
 }
 
+SsdFitOptions chosen_for(const Samples& samples, SsdFitOptions options) {
+  const double area = median(samples.area), sigma = median(samples.sigma);
+  if (!(options.length > 0))
+    options.length = std::max(least_length(area, sigma), least_sigmas * sigma);
+  if (!(options.relative_residual > 0))
+    options.relative_residual =
+        exactness(area, sigma) > 0 ? residual_of_exact : residual_of_scattered;
+  return options;
+}
+
 SsdFit fit_surface(const OctreeGrid& grid, const Samples& samples, const SsdFitOptions& options,
                    const Progress& progress) {
-  const double area = median(samples.area), sigma = median(samples.sigma);
-  const bool exact = exactness(area, sigma) > 0;
-  SsdFitOptions chosen = options;
-  if (!(options.length > 0))
-    chosen.length = std::max(least_length(area, sigma), least_sigmas * sigma);
-  if (!(options.relative_residual > 0))
-    chosen.relative_residual = exact ? residual_of_exact : residual_of_scattered;
-  Fit fit(grid, samples, chosen);
+  Fit fit(grid, samples, chosen_for(samples, options));
   // Residuals of exact samples are of the cells' making: there shorter is better.
-  if (exact)
+  if (exactness(median(samples.area), median(samples.sigma)) > 0)
     fit.start(progress);
   else
     fit.search(progress);

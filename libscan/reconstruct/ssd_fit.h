@@ -34,6 +34,9 @@ SampleWeights smoothing_weights(const Samples& samples, const std::vector<double
 std::vector<double> trust(const Samples& samples, const std::vector<double>& residuals,
                           const std::vector<double>& mean_around, double length);
 
+// With what is 0 chosen from all samples' spacing and scatter.
+SsdFitOptions chosen_for(const Samples& samples, SsdFitOptions options);
+
 // From the coarsest level to the finest: each is solved with a smoothing length in step with its
 // cells, and keeps it in the regions where that lowers the risk; past the finest level the length
 // alone goes on. Then all is solved once more for the lengths found.

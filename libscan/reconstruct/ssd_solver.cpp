@@ -9,6 +9,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "libscan/reconstruct/block_factors.h"
 
 namespace scan {
 namespace {
@@ -42,19 +43,23 @@ void next_direction(LevelArrays& direction, double factor, const LevelArrays& z,
         [&](std::size_t i) { direction[l][i] = z[l][i] + factor * direction[l][i]; }, chunk);
 }
 
-// The coarsest level solved exactly, the others by their diagonal. The exact solution is what
-// smooth functions that vanish at the samples need: their energy is far below that of the functions
-// they are made of.
+// The coarsest level solved exactly, those below the finest block by block, the finest by its
+// diagonal. Where exact solutions matter are smooth functions that vanish at the samples: their
+// energy is far below that of the functions they are made of.
 class Preconditioner {
  public:
-  explicit Preconditioner(const SsdSystem& system)
-      : functions_(system.coarsest_functions()),
-        matrix_(system.coarsest_matrix()),
-        coarsest_(matrix_),
-        diagonal_(system.diagonal()) {
+  Preconditioner(const SsdSystem& system, const OctreeGrid& grid)
+      : functions_(system.coarsest_functions()), blocks_(system.finest()) {
+    CellMatrices term;
+    for (std::size_t l = std::max<std::size_t>(system.finest(), 1); l-- > 0;) {
+      term = system.sample_matrices(l, term);
+      if (l > 0) blocks_[l] = BlockFactors(grid.levels[l], system.bending(l), term);
+    }
+    coarsest_.compute(system.coarsest_matrix(term));
     if (coarsest_.info() != Eigen::Success)
       throw Error(Trouble::computation, "ssd: the coarsest level's matrix is not positive definite",
                   "the weights differ too much, or the points do not determine a surface");
+    if (system.finest() > 0) diagonal_ = system.finest_diagonal();
   }
 
   void apply(const LevelArrays& residual, std::size_t finest, LevelArrays& z) const {
@@ -62,9 +67,17 @@ class Preconditioner {
     for (std::size_t i = 0; i < functions_.size(); ++i) coarse[i] = residual[0][functions_[i]];
     coarsest_.solveInPlace(coarse);
     for (std::size_t i = 0; i < functions_.size(); ++i) z[0][functions_[i]] = coarse[i];
-    for (std::size_t l = 1; l <= finest; ++l)
+    for (std::size_t l = 1; l < finest; ++l)
       parallel_for(
-          z[l].size(), [&](std::size_t i) { z[l][i] = residual[l][i] / diagonal_[l][i]; }, chunk);
+          z[l].size() / block_size,
+          [&](std::size_t b) {
+            blocks_[l].solve(b, residual[l].data() + b * block_size, z[l].data() + b * block_size);
+          },
+          16);
+    if (finest > 0)
+      parallel_for(
+          z[finest].size(),
+          [&](std::size_t i) { z[finest][i] = residual[finest][i] / diagonal_[i]; }, chunk);
   }
 
   // sqrt(r' P r)
@@ -75,9 +88,9 @@ class Preconditioner {
 
  private:
   std::vector<std::uint32_t> functions_;
-  Eigen::MatrixXd matrix_;  // factorised in place
-  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> coarsest_;
-  LevelArrays diagonal_;
+  Eigen::LLT<Eigen::MatrixXd> coarsest_;
+  std::vector<BlockFactors> blocks_;  // per level below the finest; none for the coarsest
+  std::vector<double> diagonal_;      // of the finest
 };
 
 struct Work {
@@ -88,6 +101,7 @@ struct Work {
 
 struct SsdSolver::State {
   SsdSystem& system;
+  const OctreeGrid& grid;
   std::optional<Preconditioner> precondition;
   Work work;
 
@@ -102,16 +116,15 @@ struct SsdSolver::State {
 SsdSolver::SsdSolver(SsdSystem& system, const OctreeGrid& grid)
     : state_(new State{
           system,
+          grid,
           std::nullopt,
-          {active_arrays(grid), active_arrays(grid), active_arrays(grid), active_arrays(grid)}}) {
-  refresh();
-}
+          {active_arrays(grid), active_arrays(grid), active_arrays(grid), active_arrays(grid)}}) {}
 
 SsdSolver::~SsdSolver() = default;
 
 void SsdSolver::refresh() {
   state_->precondition.reset();
-  state_->precondition.emplace(state_->system);
+  state_->precondition.emplace(state_->system, state_->grid);
 }
 
 int SsdSolver::improve(double relative_residual, int max_iterations, LevelArrays& x) {
@@ -160,6 +173,7 @@ SsdSolution solve(SsdSystem& system, const OctreeGrid& grid, double relative_res
   const std::size_t levels = grid.levels.size();
   for (std::size_t l = 0; l < levels; ++l) {
     system.use_levels(l);
+    solver.refresh();
     // What a coarse start leaves behind the finer levels must repair anyway: ten times the target.
     const double share = l + 1 < levels ? 10 * relative_residual : relative_residual;
     solution.iterations +=

@@ -19,15 +19,14 @@ struct SsdSolution {
   SolveStop stop = SolveStop::iteration_limit;
 };
 
-// Preconditioner: the diagonal of the system with all levels' functions, which acts as a multilevel
-// preconditioner of the finest level (Bramble, Pasciak and Xu 1990; Griebel 1994), and an exact
-// solution on the coarsest level.
+// Preconditioner: additive over the levels (Bramble, Pasciak and Xu 1990; Griebel 1994), by the
+// diagonal on the finest, block by block on those below, exact on the coarsest.
 class SsdSolver {
  public:
-  // Keeps a reference to the system.
+  // Keeps references to system and grid.
   SsdSolver(SsdSystem& system, const OctreeGrid& grid);
   ~SsdSolver();
-  // To be called when the system's levels or weights have changed.
+  // To be called first, and when the system's levels or weights have changed.
   void refresh();
   // Conjugate gradients on the levels in use until the residual is `relative_residual` of the right
   // side. Returns the iterations.

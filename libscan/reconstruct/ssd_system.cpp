@@ -6,8 +6,6 @@
 #include <numeric>
 
 #include "libscan/core/parallel.h"
-#include "libscan/reconstruct/sample_matrix.h"
-#include "libscan/search/batch.h"
 
 namespace scan {
 
@@ -15,7 +13,6 @@ SsdSystem::SsdSystem(const OctreeGrid& grid, const Samples& samples, SampleWeigh
     : grid_(grid),
       samples_(samples),
       depths_(depths_seen(grid, samples.points)),
-      order_(curve_order(samples.points)),
       weights_(std::move(weights)),
       terms_(grid.levels.size()) {
   for (const BlockLevel& level : grid.levels) {
@@ -38,6 +35,13 @@ void SsdSystem::use_levels(std::size_t finest) {
     chosen[std::min<std::size_t>(depths_[i] - coarsest_depth, finest)].push_back(i);
   for (std::size_t l = 0; l <= finest; ++l)
     terms_[l] = SampleTerm(grid_.levels[l], samples_, weights_, chosen[l]);
+  if (finest > 0) {
+    std::vector<std::uint32_t>& last = chosen[finest - 1];
+    last.insert(last.end(), chosen[finest].begin(), chosen[finest].end());
+  }
+  in_cells_.clear();
+  for (std::size_t l = 0; l < std::max<std::size_t>(finest, 1); ++l)
+    in_cells_.push_back(in_cells(grid_.levels[l], samples_, chosen[l]));
 }
 
 void SsdSystem::accumulate_coarse_to_fine(const LevelArrays& x) {
@@ -82,25 +86,25 @@ LevelArrays SsdSystem::right_side() {
   return b;
 }
 
-LevelArrays SsdSystem::diagonal() const {
-  LevelArrays result = active_arrays(grid_);
-  const auto of_level = [&](std::size_t l) {
-    const BlockLevel& level = grid_.levels[l];
-    std::vector<std::uint32_t> chosen;  // a level's functions meet the samples of finer levels too
-    for (const std::uint32_t i : order_)
-      if (depths_[i] >= level.depth) chosen.push_back(i);
-    std::vector<double> sum(level.blocks.size() * block_size, 0.0);
-    add_sample_diagonal(level, samples_, weights_, chosen, sum);
-    parallel_for(level.active, [&](std::size_t b) {
-      for (int slot = 0; slot < block_size; ++slot) {
-        const std::size_t i = b * block_size + slot;
-        const double entry = sum[i] + bending_[l].diagonal(level.blocks[b], slot);
-        result[l][i] = entry > 0 ? entry : 1;
-      }
-    });
-  };
-  parallel_for(finest_ + 1, of_level, 1);
-  return result;
+std::vector<double> SsdSystem::finest_diagonal() const {
+  const BlockLevel& level = grid_.levels[finest_];
+  std::vector<double> diagonal(level.blocks.size() * block_size, 0.0);
+  terms_[finest_].add_diagonal(level, diagonal);
+  diagonal.resize(level.active * block_size);
+  parallel_for(level.active, [&](std::size_t b) {
+    for (int slot = 0; slot < block_size; ++slot) {
+      double& entry = diagonal[b * block_size + static_cast<std::size_t>(slot)];
+      entry += bending_[finest_].diagonal(level.blocks[b], slot);
+      if (!(entry > 0)) entry = 1;
+    }
+  });
+  return diagonal;
+}
+
+CellMatrices SsdSystem::sample_matrices(std::size_t l, const CellMatrices& finer) const {
+  CellMatrices own = cell_matrices(grid_.levels[l], samples_, weights_, in_cells_[l]);
+  if (l + 1 == in_cells_.size()) return own;
+  return coarsened(grid_, l, finer, own);
 }
 
 std::vector<std::uint32_t> SsdSystem::coarsest_functions() const {
@@ -116,7 +120,7 @@ std::vector<std::uint32_t> SsdSystem::coarsest_functions() const {
   return functions;
 }
 
-Eigen::MatrixXd SsdSystem::coarsest_matrix() const {
+Eigen::MatrixXd SsdSystem::coarsest_matrix(const CellMatrices& samples) const {
   const BlockLevel& level = grid_.levels.front();
   const std::vector<std::uint32_t> functions = coarsest_functions();
   const std::size_t size = functions.size();
@@ -124,7 +128,7 @@ Eigen::MatrixXd SsdSystem::coarsest_matrix() const {
   for (std::size_t row = 0; row < size; ++row)
     row_of[functions[row]] = static_cast<std::int32_t>(row);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
-  add_sample_matrix(level, samples_, weights_, order_, row_of, matrix);
+  add_dense(level, samples, row_of, matrix);
   for (std::size_t row = 0; row < size; ++row)
     bending_[0].for_row(level, functions[row], [&](std::size_t function, double entry) {
       if (row_of[function] >= 0) matrix(row_of[function], row) += entry;  // it is symmetric

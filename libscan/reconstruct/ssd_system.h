@@ -5,8 +5,7 @@
 
 #include <vector>
 
-#include "libscan/reconstruct/sample_term.h"
-#include "libscan/reconstruct/spline_levels.h"
+#include "libscan/reconstruct/cell_matrices.h"
 
 namespace scan {
 
@@ -26,11 +25,15 @@ class SsdSystem {
   // y = A x; arrays of active blocks, as from active_arrays().
   void multiply(const LevelArrays& x, LevelArrays& y) { multiply(x, y, true); }
   LevelArrays right_side();
-  // Of A, levels in use; 1 where a row is empty (functions outside the cube).
-  LevelArrays diagonal() const;
+  // Of A, on the finest level in use; 1 where a row is empty (functions outside the cube).
+  std::vector<double> finest_diagonal() const;
+  // The term of all samples that level l's functions meet; l is below the finest level, or 0.
+  // `finer`: that of level l + 1, if l + 1 is below the finest.
+  CellMatrices sample_matrices(std::size_t l, const CellMatrices& finer) const;
+  const BendingStencil& bending(std::size_t l) const { return bending_[l]; }
   // The coarsest level's functions that lie in the cube, and the block of A for these, dense.
   std::vector<std::uint32_t> coarsest_functions() const;
-  Eigen::MatrixXd coarsest_matrix() const;
+  Eigen::MatrixXd coarsest_matrix(const CellMatrices& samples) const;
   // Per sample: f / |grad f|, to first order the distance to the zero set.
   std::vector<double> residuals(const LevelArrays& x);
   // From now on aims at f = sigma^2 / 2 times the Laplacian of x at each sample, not at f = 0: that
@@ -45,7 +48,8 @@ class SsdSystem {
   const OctreeGrid& grid_;
   const Samples& samples_;
   std::vector<int> depths_;
-  std::vector<std::uint32_t> order_;  // of the samples, along a curve that fills space
+  // Of each level below the finest; the last holds the finest level's samples too.
+  std::vector<std::vector<CellSample>> in_cells_;
   SampleWeights weights_;
   std::size_t finest_ = 0;
   std::vector<BendingStencil> bending_;

@@ -30,6 +30,14 @@ struct DecimateReport {
   bool is_proven = false;            // else the surface stayed as it was
 };
 
+// What solving part by part has done (ssd_parts.h).
+struct PartsReport {
+  std::size_t parts_per_axis = 1;
+  // How far apart the surfaces of neighbouring parts are where they are blended, at the points.
+  double seam_rms_m = 0, seam_largest_m = 0;
+  std::size_t seam_points = 0;
+};
+
 struct SurfaceResult {
   Mesh surface;
   std::string method;                  // set by reconstruct()
@@ -53,6 +61,7 @@ struct SurfaceResult {
   std::size_t outlying_points = 0;    // on no surface, left out
   std::size_t estimated_normals = 0;  // were missing
   std::size_t turned_normals = 0;     // pointed the wrong way
+  PartsReport parts;
   SharpReport sharp;
   DecimateReport decimation;
   double trimmed_area_m2 = 0;  // of surface without support, cut away

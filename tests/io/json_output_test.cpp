@@ -89,7 +89,9 @@ TEST(JsonOutput, SurfacesTellTheirTopology) {
   result.surface = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                     {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
   result.depth = 8;
+  result.parts.parts_per_axis = 4;
   const ordered_json object = surface_json(result);
+  EXPECT_EQ(object["parts_per_axis"], 4);
   EXPECT_EQ(object["triangles"], 4);
   EXPECT_EQ(object["watertight"], true);
   EXPECT_EQ(object["genus"], 0);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "libscan/core/error.h"
 #include "tests/reconstruct/shapes.h"
 
 namespace scan {
@@ -67,15 +66,15 @@ TEST(OctreeGrid, SurroundsEachActiveBlock) {
       }
 }
 
-TEST(OctreeGrid, RefusesWhatDoesNotFit) {
-  const std::vector<Eigen::Vector3d> points = {{0.5, 0.5, 0.5}};
-  const std::vector<int> depths = {8};
-  try {
-    make_octree_grid(points, depths, 4, 1e-4);
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.trouble(), Trouble::resource);
-  }
+TEST(OctreeGrid, CountsItsBlocksWithoutBuildingIt) {
+  const std::vector<Eigen::Vector3d> points = {{0.5, 0.5, 0.5}, {0.1, 0.2, 0.3}};
+  const std::vector<int> depths = {8, 6};
+  std::size_t blocks = 0;
+  for (const BlockLevel& level : make_octree_grid(points, depths, 4).levels)
+    blocks += level.blocks.size();
+  EXPECT_EQ(octree_blocks(points, depths, 4, 1e9), blocks);
+  EXPECT_GT(octree_blocks(points, depths, 4, 10), 10u);  // enough
+  EXPECT_LT(octree_blocks(points, depths, 4, 10), blocks);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <functional>
 #include <numeric>
 
+#include "libscan/reconstruct/block_factors.h"
 #include "libscan/reconstruct/spline_field.h"
 #include "tests/reconstruct/shapes.h"
 
@@ -140,28 +141,67 @@ TEST(SsdSystem, IsSymmetric) {
   EXPECT_NEAR(dot(ax, y), dot(ay, x), 1e-13 * size);
 }
 
-TEST(SsdSystem, KnowsItsDiagonalAndItsCoarsestMatrix) {
+// Of one function.
+LevelArrays column_of(SsdSystem& system, const OctreeGrid& grid, std::size_t l, std::size_t i) {
+  LevelArrays unit = active_arrays(grid), column = unit;
+  unit[l][i] = 1;
+  system.multiply(unit, column);
+  return column;
+}
+
+TEST(SsdSystem, KnowsItsFinestDiagonal) {
   Problem problem;
   SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
-  const LevelArrays diagonal = system.diagonal();
-  const Eigen::MatrixXd coarsest = system.coarsest_matrix();
+  for (std::size_t l = problem.grid.levels.size(); l-- > 0;) {
+    system.use_levels(l);
+    const std::vector<double> diagonal = system.finest_diagonal();
+    for (std::size_t i = l; i < diagonal.size(); i += diagonal.size() / 7) {
+      const double found = column_of(system, problem.grid, l, i)[l][i];
+      if (found == 0)
+        EXPECT_EQ(diagonal[i], 1);  // outside the cube
+      else
+        EXPECT_NEAR(found, diagonal[i], 1e-13 * found);
+    }
+  }
+}
+
+// The samples' matrices go from level to level: the coarsest has met them all.
+TEST(SsdSystem, KnowsItsCoarsestMatrix) {
+  Problem problem;
+  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
   const std::vector<std::uint32_t> functions = system.coarsest_functions();
   EXPECT_EQ(functions.size(), 1000u);  // 8 cells and two more functions an axis
-  for (std::size_t l = 0; l < diagonal.size(); ++l)
-    for (std::size_t i = l; i < diagonal[l].size(); i += diagonal[l].size() / 7) {
-      LevelArrays unit = active_arrays(problem.grid), column = unit;
-      unit[l][i] = 1;
-      system.multiply(unit, column);
-      if (column[l][i] == 0) continue;  // outside the cube
-      EXPECT_NEAR(column[l][i], diagonal[l][i], 1e-13 * diagonal[l][i]);
-      if (l == 0) {
-        const auto row =
-            std::lower_bound(functions.begin(), functions.end(), i) - functions.begin();
-        ASSERT_EQ(functions[row], i);
-        for (std::size_t j = 0; j < functions.size(); ++j)
-          EXPECT_NEAR(column[0][functions[j]], coarsest(j, row), 1e-13 * diagonal[0][i]);
+  CellMatrices term;
+  for (std::size_t l = problem.grid.levels.size() - 1; l-- > 0;)
+    term = system.sample_matrices(l, term);
+  const Eigen::MatrixXd coarsest = system.coarsest_matrix(term);
+  for (std::size_t row = 3; row < functions.size(); row += 140) {
+    const LevelArrays column = column_of(system, problem.grid, 0, functions[row]);
+    for (std::size_t j = 0; j < functions.size(); ++j)
+      EXPECT_NEAR(column[0][functions[j]], coarsest(j, row), 1e-13 * coarsest(row, row));
+  }
+}
+
+TEST(SsdSystem, SolvesItsBlocks) {
+  Problem problem;
+  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
+  CellMatrices term;
+  for (std::size_t l = problem.grid.levels.size() - 1; l-- > 1;) {
+    const BlockLevel& level = problem.grid.levels[l];
+    term = system.sample_matrices(l, term);
+    const BlockFactors factors(level, system.bending(l), term);
+    for (std::size_t b = l; b < level.active; b += level.active / 5) {
+      // Functions in the middle of the block and at its corners.
+      for (const std::size_t slot : {21u, 0u, 63u}) {
+        const LevelArrays column = column_of(system, problem.grid, l, b * block_size + slot);
+        if (column[l][b * block_size + slot] == 0) continue;  // outside the cube
+        std::array<double, block_size> found;
+        factors.solve(b, column[l].data() + b * block_size, found.data());
+        // Float's 6e-8, times the condition of a block, some 1e3.
+        for (std::size_t i = 0; i < block_size; ++i) EXPECT_NEAR(found[i], i == slot, 1e-4);
       }
     }
+  }
 }
 
 }  // namespace
