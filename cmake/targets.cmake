@@ -15,6 +15,8 @@ function(scan_add_library name)
                                                  $<INSTALL_INTERFACE:include>)
   target_link_libraries(scan_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   target_compile_options(scan_${name} PRIVATE ${LIBSCAN_WARNINGS})
+  set_target_properties(scan_${name} PROPERTIES EXPORT_NAME ${name})
+  install(TARGETS scan_${name} EXPORT libscanTargets)
 endfunction()
 
 # scan_kernel_source(files...): loops for vector instructions (libscan/core/instruction_sets.h). Each

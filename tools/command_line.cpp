@@ -74,14 +74,6 @@ struct Declared {
   Action action;
 };
 
-void add_shared_options(CLI::App& app, Console& console) {
-  app.add_flag("--json", console.json, "print one JSON object on stdout");
-  app.add_flag("-q,--quiet", console.quiet, "no log on stderr");
-  app.add_flag("-v,--verbose", console.verbose, "more log on stderr");
-  app.add_option("--threads", console.threads, "threads to use (0: all cores)")
-      ->check(CLI::Range(0, 4096));
-}
-
 int report_error(const Console& console, const std::string& command, const Error& error) {
   const int code = static_cast<int>(error.trouble());
   const std::string hint = error.hint().empty() ? "" : " (" + error.hint() + ")";
@@ -132,7 +124,7 @@ int run_action(const Declared& declared, Console& console) {
   const std::string& name = declared.command->name;
   try {
     declared.line->resolve_lengths();
-    const ThreadLimit limit(console.threads);
+    const ThreadLimit limit(static_cast<int>(console.threads));
     return declared.action(console);
   } catch (const Error& error) {
     return report_error(console, name, error);
@@ -147,6 +139,13 @@ int run_action(const Declared& declared, Console& console) {
 }
 
 }  // namespace
+
+void declare_shared_options(CommandLine& line, Console& console) {
+  line.flag("--json", console.json, "print one JSON object on stdout");
+  line.flag("-q,--quiet", console.quiet, "no log on stderr");
+  line.flag("-v,--verbose", console.verbose, "more log on stderr");
+  line.whole("--threads", console.threads, 0, 4096, "threads to use (0: all cores)");
+}
 
 double parse_length_m(const std::string& text, const std::string& option) {
   static const std::map<std::string, double> units = {{"", 1},      {"m", 1},     {"mm", 1e-3},
@@ -179,7 +178,7 @@ int run_program(int argc, char** argv, const std::vector<Command>& commands) {
     sub->footer("Example:\n  " + command.example);
     auto line = std::make_shared<CliCommandLine>(*sub);
     Action action = command.declare(*line);
-    add_shared_options(*sub, console);
+    declare_shared_options(*line, console);
     declared.push_back({&command, sub, line, std::move(action)});
   }
   app.footer(

@@ -43,6 +43,9 @@ struct Command {
   Action (*declare)(CommandLine&);
 };
 
+// What every command accepts beside its own.
+void declare_shared_options(CommandLine& line, Console& console);
+
 // Reads the arguments, runs the command that they name and returns the exit code. Every error ends
 // in one line `error: ...` on stderr, and with --json in one object on stdout.
 int run_program(int argc, char** argv, const std::vector<Command>& commands);

@@ -17,6 +17,11 @@ Action tradeoff_command(CommandLine& line);
 Action report_command(CommandLine& line);
 Action info_command(CommandLine& line);
 Action convert_command(CommandLine& line);
+Action schema_command(CommandLine& line);
+Action completion_command(CommandLine& line);
 Action version_command(CommandLine& line);
+
+// In the order of the program's help; the table stands in scan.cpp.
+std::vector<Command> all_commands();
 
 }  // namespace scan

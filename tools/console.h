@@ -26,7 +26,7 @@ class Console {
   bool json = false;
   bool quiet = false;
   bool verbose = false;
-  int threads = 0;
+  long threads = 0;       // 0: all cores
   bool is_inner = false;  // of a run within another command: its warnings are kept, not shown
 
   void log(const std::string& text) const;     // stderr, unless quiet

@@ -15,7 +15,6 @@ namespace scan {
 namespace {
 
 using nlohmann::ordered_json;
-constexpr long recipe_version = 1;
 
 // Reads one part of a recipe, from its object or, when that is missing, from nothing but defaults.
 template <class Part>

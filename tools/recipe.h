@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recipe: one complete experiment, from scene to limits, as JSON.
 //
-// The keys stand in recipe_fields.cpp (one list for reading and writing) and recipe_scene.cpp;
-// `scan run` writes the recipe back with all defaults filled in.
+// The keys stand in recipe_scanner.cpp and recipe_stages.cpp (one list for reading, writing and the
+// schema) and in recipe_scene.cpp, recipe_materials.cpp and recipe_lights.cpp (whose schema stands
+// in scene_schema.cpp); `scan run` writes the recipe back with all defaults filled in.
 #pragma once
 
 #include <filesystem>
@@ -23,6 +24,8 @@
 #include "tools/recipe_scene.h"
 
 namespace scan {
+
+inline constexpr long recipe_version = 1;  // of the keys, "libscan"
 
 struct ReconstructSettings {
   ReconstructMethod method = ReconstructMethod::ssd;

@@ -108,6 +108,14 @@ std::string unit_name(double unit_m) {
 
 }  // namespace
 
+std::vector<std::string> model_names() {
+  return keys_of(models);
+}
+
+std::vector<std::string> mesh_unit_names() {
+  return keys_of(mesh_units);
+}
+
 RecipeScene read_scene(JsonReader reader, const std::filesystem::path& folder,
                        double wavelength_m) {
   RecipeScene scene;

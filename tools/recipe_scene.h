@@ -25,6 +25,10 @@ struct RecipeScene {
   std::optional<RecipeMedium> medium;
 };
 
+// What an object's "shape" may be in one word, and its mesh's "unit".
+std::vector<std::string> model_names();
+std::vector<std::string> mesh_unit_names();
+
 // Files are relative to `folder`; materials have the indices of refraction at `wavelength_m`.
 RecipeScene read_scene(JsonReader reader, const std::filesystem::path& folder, double wavelength_m);
 nlohmann::ordered_json to_json(const RecipeScene& scene);

@@ -21,9 +21,7 @@ Action run_command(CommandLine& line) {
   declare_run_settings(line, arguments->settings);
   return [arguments](Console& console) {
     RunSession session(arguments->recipe, arguments->run, arguments->settings, console);
-    session.stage("simulate", [&](const auto& run, const Recipe& recipe) {
-      simulate_run(run, recipe, {.keep_raw = arguments->settings.keep_raw}, console);
-    });
+    (void)session.simulate();
     session.stage("align",
                   [&](const auto& run, const Recipe& recipe) { align_run(run, recipe, console); });
     session.stage("reconstruct", [&](const auto& run, const Recipe& recipe) {

@@ -22,22 +22,22 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-// What each stage leaves behind, as files or folders. timings.json belongs to none: it alone may
+// What each stage leaves behind, as files or folders. The timings belong to none: they alone may
 // differ between equal runs.
 const std::map<std::string, std::vector<std::string>> stage_outputs = {
-    {"simulate", {"effects.json", "simulation.json", "scans", "truth", "raw"}},
+    {"simulate", {"effects.json", "simulation", "simulation.json", "scans", "truth", "raw"}},
     {"align", {"alignment.json", "pose_trace.json", "poses.tum"}},
     {"reconstruct", {"surface.ply", "reconstruction.json"}},
     {"verify", {"verdict.json"}}};
 
 RunFolder open_folder(const fs::path& run, const RunSettings& settings, const std::string& recipe) {
-  if (settings.resume && !settings.force && fs::exists(recipe_path(run)) &&
-      read_file(recipe_path(run)) != recipe)
+  const bool joins = !settings.force && (settings.resume || !settings.shard.empty());
+  if (joins && fs::exists(recipe_path(run)) && read_file(recipe_path(run)) != recipe)
     throw Error(Trouble::input, run.string() + ": holds a run of another recipe",
                 "--force replaces it");
-  return open_run_folder(run, settings.force    ? RunStart::force
-                              : settings.resume ? RunStart::resume
-                                                : RunStart::fresh);
+  return open_run_folder(run, settings.force ? RunStart::force
+                              : joins        ? RunStart::resume
+                                             : RunStart::fresh);
 }
 
 // The files of a stage that are there, relative to the folder.
@@ -97,7 +97,10 @@ void declare_run_settings(CommandLine& line, RunSettings& settings) {
 
 RunSession::RunSession(const fs::path& recipe, const fs::path& run, const RunSettings& settings,
                        Console& console)
-    : run_(run), recipe_(adjusted(read_recipe(recipe), settings)), console_(console) {
+    : run_(run),
+      recipe_(adjusted(read_recipe(recipe), settings)),
+      console_(console),
+      settings_(settings) {
   const std::string as_run = json_text(to_json(recipe_));
   folder_ = open_folder(run_, settings, as_run);
   write_file(recipe_path(run_), as_run);
@@ -105,14 +108,32 @@ RunSession::RunSession(const fs::path& recipe, const fs::path& run, const RunSet
 }
 
 void RunSession::stage(const std::string& name, const Work& work) {
-  if (is_done(folder_, name, inputs_)) return console_.log(name + ": already done");
+  (void)part_of_stage(name, [&] {
+    work(run_, recipe_);
+    return true;
+  });
+}
+
+bool RunSession::simulate() {
+  const Shard shard = settings_.shard.empty() ? Shard() : parse_shard(settings_.shard);
+  return part_of_stage("simulate", [&] {
+    return simulate_run(run_, recipe_, {settings_.keep_raw, shard, inputs_}, console_);
+  });
+}
+
+bool RunSession::part_of_stage(const std::string& name, const std::function<bool()>& work) {
+  if (is_done(folder_, name, inputs_)) {
+    console_.log(name + ": already done");
+    return true;
+  }
   a_stage_ran_ = true;
   const Stopwatch watch;
-  work(run_, recipe_);
+  const bool whole = work();
   const double seconds = watch.seconds();
   char text[64];
   std::snprintf(text, sizeof text, "%s: %.1f s", name.c_str(), seconds);
   console_.log(text);
+  if (!whole) return false;
   if (!console_.seconds().contains(name)) console_.time(name, seconds);
   ordered_json timings = read_or_empty(run_ / "timings.json");
   for (const auto& [step, value] : console_.seconds()) timings[step] = value;
@@ -120,6 +141,7 @@ void RunSession::stage(const std::string& name, const Work& work) {
   timings["threads"] = thread_count();
   write_json(run_ / "timings.json", timings);
   record_stage(folder_, name, inputs_, output_files(run_, name));
+  return true;
 }
 
 void RunSession::report() {

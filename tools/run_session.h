@@ -18,6 +18,7 @@ struct RunSettings {
   bool keep_raw = false;
   bool resume = false;
   bool force = false;
+  std::string shard;    // "2/4", or empty: the whole run
   std::string effects;  // overrides the recipe's choice unless empty
   long seed = -1;       // overrides the recipe's seed unless negative
 };
@@ -37,6 +38,10 @@ class RunSession {
   using Work = std::function<void(const std::filesystem::path& run, const Recipe& recipe)>;
   void stage(const std::string& name, const Work& work);
 
+  // The first stage, or the share of it that the settings name; false while other shares are
+  // missing.
+  bool simulate();
+
   // Writes report.html and its twins unless it is there and no stage ran. It is no recorded stage:
   // it shows seconds, and stages.json is the same for equal runs.
   void report();
@@ -49,11 +54,15 @@ class RunSession {
   int finish(const std::string& command, const nlohmann::ordered_json& more, bool pass);
 
  private:
+  // True once the stage is whole; only then it is recorded.
+  bool part_of_stage(const std::string& name, const std::function<bool()>& work);
+
   std::filesystem::path run_;
   Recipe recipe_;
   Console& console_;
   bool a_stage_ran_ = false;
   RunFolder folder_;
+  RunSettings settings_;
   std::string inputs_;  // fingerprint of what decides every stage's output
 };
 

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The first stage of a run: raw frames, scans, truth and the effect plan.
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
+#include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
+#include "libscan/io/json_reader.h"
 #include "libscan/io/raw_files.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/truth_file.h"
@@ -17,6 +20,7 @@
 namespace scan {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 ordered_json effects_json(const synth::EffectPlan& plan) {
@@ -30,28 +34,45 @@ ordered_json effects_json(const synth::EffectPlan& plan) {
   return list;
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw Error(Trouble::output, folder.string() + ": " + error.message());
+fs::path record_path(const fs::path& run, std::size_t i) {
+  return run / "simulation" / (scan_name(i) + ".json");
 }
 
-// What the whole simulation took and how near it came, besides the seconds.
-struct Totals {
-  double acquire_s = 0;
+fs::path seconds_path(const fs::path& run, std::size_t i) {
+  return run / "timings" / (scan_name(i) + ".json");
+}
+
+// What one scan's simulation took and how near it came.
+struct ScanRecord {
   std::uint64_t paths = 0;
   double sampling_error = 0;
-
-  void add(const synth::RenderStatistics& statistics) {
-    paths += statistics.paths;
-    sampling_error = std::max(sampling_error, statistics.sampling_error_rms);
-  }
+  double simulate_s = 0, acquire_s = 0;
 };
 
-Scan decode(std::size_t i, const RawFrames& frames, const Recipe& recipe, Totals& totals) {
-  const Stopwatch watch;
+// The record comes behind all else of its scan, so a scan that has one is whole.
+void write_record(const fs::path& run, std::size_t i, const std::string& inputs,
+                  const ScanRecord& record) {
+  write_json(seconds_path(run, i),
+             {{"simulate", record.simulate_s}, {"acquire", record.acquire_s}});
+  write_json(
+      record_path(run, i),
+      {{"inputs", inputs}, {"paths", record.paths}, {"sampling_error", record.sampling_error}});
+}
+
+// None if the scan is not whole, or was made of other inputs.
+std::optional<ScanRecord> read_record(const fs::path& run, std::size_t i,
+                                      const std::string& inputs) {
+  for (const fs::path& file : {record_path(run, i), seconds_path(run, i), scan_path(run, i)})
+    if (!fs::exists(file)) return std::nullopt;
+  const nlohmann::json record = read_json(record_path(run, i));
+  const nlohmann::json seconds = read_json(seconds_path(run, i));
+  if (record.value("inputs", "") != inputs) return std::nullopt;
+  return ScanRecord{record.value("paths", std::uint64_t{0}), record.value("sampling_error", 0.0),
+                    seconds.value("simulate", 0.0), seconds.value("acquire", 0.0)};
+}
+
+Scan decode(std::size_t i, const RawFrames& frames, const Recipe& recipe) {
   Scan scan = acquire(frames, recipe.acquire);
-  totals.acquire_s += watch.seconds();
   if (scan.cloud.empty())
     throw Error(Trouble::computation,
                 "scan " + scan_name(i) +
@@ -61,7 +82,7 @@ Scan decode(std::size_t i, const RawFrames& frames, const Recipe& recipe, Totals
 }
 
 // The plan with its costs, which go into timings.json: they differ from run to run.
-synth::EffectPlan plan_run(const std::filesystem::path& run, const Recipe& recipe,
+synth::EffectPlan plan_run(const fs::path& run, const Recipe& recipe,
                            const std::vector<Pose>& poses, Console& console) {
   const Stopwatch watch;
   const synth::Scene& scene = recipe.scene.scene;
@@ -76,44 +97,83 @@ synth::EffectPlan plan_run(const std::filesystem::path& run, const Recipe& recip
   return plan;
 }
 
+// A scene made ready for the rays of all scans.
+struct Stage {
+  const Recipe& recipe;
+  const SimulateOptions& options;
+  std::vector<Pose> poses;    // world_from_scanner
+  std::vector<Pose> guesses;  // of them
+  synth::EffectSet effects;
+  synth::RayCaster caster;      // of what is rendered
+  synth::RayCaster measurable;  // of what has a truth
+};
+
+void simulate_scan(const fs::path& run, std::size_t i, const Stage& stage) {
+  ScanRecord record;
+  const Stopwatch rendering;
+  const auto [frames, statistics] =
+      render(stage.recipe.scanner, stage.caster, stage.poses[i],
+             {.seed = stage.recipe.seed, .scan = static_cast<std::uint32_t>(i)}, stage.effects);
+  record.paths = statistics.paths;
+  record.sampling_error = statistics.sampling_error_rms;
+  if (stage.options.keep_raw) {
+    make_folder(raw_path(run, i));
+    write_raw_frames(raw_path(run, i), frames);
+  }
+  const Stopwatch decoding;
+  Scan scan = decode(i, frames, stage.recipe);
+  record.acquire_s = decoding.seconds();
+  scan.world_from_scanner_guess = stage.guesses[i];
+  write_scan(scan_path(run, i), scan);
+  write_true_rays(truth_path(run), i,
+                  true_rays(stage.recipe.scanner, stage.measurable, stage.poses[i]));
+  record.simulate_s = rendering.seconds() - record.acquire_s;
+  write_record(run, i, stage.options.inputs, record);
+}
+
+// What belongs to all scans together; false, and nothing is written, while one of them is missing.
+bool complete(const fs::path& run, const Stage& stage, Console& console) {
+  ScanRecord total;
+  for (std::size_t i = 0; i < stage.poses.size(); ++i) {
+    const auto record = read_record(run, i, stage.options.inputs);
+    if (!record) return false;
+    total.paths += record->paths;
+    total.sampling_error = std::max(total.sampling_error, record->sampling_error);
+    total.simulate_s += record->simulate_s;
+    total.acquire_s += record->acquire_s;
+  }
+  write_true_scene(truth_path(run), true_surface(stage.measurable.scene()), stage.poses);
+  write_json(run / "simulation.json",
+             {{"paths", total.paths}, {"sampling_error", total.sampling_error}});
+  console.time("acquire", total.acquire_s);
+  console.time("simulate", total.simulate_s);
+  return true;
+}
+
 }  // namespace
 
-void simulate_run(const std::filesystem::path& run, const Recipe& recipe,
-                  const SimulateOptions& options, Console& console) {
+bool simulate_run(const fs::path& run, const Recipe& recipe, const SimulateOptions& options,
+                  Console& console) {
   const Progress progress = console.progress();
   const auto poses = synth::true_poses(recipe.viewpoints);
-  const auto guesses = synth::guessed_poses(recipe.viewpoints, recipe.seed);
   const synth::EffectSet effects = effects_of(plan_run(run, recipe, poses, console));
-  const Stopwatch watch;
-  Totals totals;
-  const synth::RayCaster caster(simplified(recipe.scene.scene, effects));
-  const synth::RayCaster measurable(without_clear_objects(recipe.scene.scene));
-  make_folder(run / "scans");
-  make_folder(truth_path(run));
-
-  Truth truth{.surface = true_surface(measurable.scene()), .scans = {}};
+  const Stage stage{recipe,
+                    options,
+                    poses,
+                    synth::guessed_poses(recipe.viewpoints, recipe.seed),
+                    effects,
+                    synth::RayCaster(simplified(recipe.scene.scene, effects)),
+                    synth::RayCaster(without_clear_objects(recipe.scene.scene))};
+  for (const fs::path& folder :
+       {run / "scans", truth_path(run), run / "simulation", run / "timings"})
+    make_folder(folder);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     progress("simulate", static_cast<double>(i) / static_cast<double>(poses.size()));
-    const auto [frames, statistics] =
-        render(recipe.scanner, caster, poses[i],
-               {.seed = recipe.seed, .scan = static_cast<std::uint32_t>(i)}, effects);
-    totals.add(statistics);
-    if (options.keep_raw) {
-      make_folder(raw_path(run, i));
-      write_raw_frames(raw_path(run, i), frames);
-    }
-    Scan scan = decode(i, frames, recipe, totals);
-    scan.world_from_scanner_guess = guesses[i];
-    write_scan(scan_path(run, i), scan);
-    truth.scans.push_back(
-        {scan_name(i), poses[i], true_rays(recipe.scanner, measurable, poses[i])});
+    const bool is_there = !options.inputs.empty() && read_record(run, i, options.inputs);
+    if (holds(options.shard, i) && !is_there) simulate_scan(run, i, stage);
   }
   progress("simulate", 1);
-  write_truth(truth_path(run), truth);
-  write_json(run / "simulation.json",
-             {{"paths", totals.paths}, {"sampling_error", totals.sampling_error}});
-  console.time("acquire", totals.acquire_s);
-  console.time("simulate", watch.seconds() - totals.acquire_s);
+  return complete(run, stage, console);
 }
 
 }  // namespace scan

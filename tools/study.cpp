@@ -84,6 +84,12 @@ void apply(StudyRecipe& run, const FieldValues& set) {
 
 }  // namespace
 
+const std::vector<std::string>& timed_stages() {
+  static const std::vector<std::string> stages = {"all", "simulate", "acquire", "align",
+                                                  "reconstruct"};
+  return stages;
+}
+
 Study read_study(JsonReader reader) {
   Study study;
   study.seeds = static_cast<int>(reader.integer("seeds", study.seeds));
@@ -91,7 +97,7 @@ Study read_study(JsonReader reader) {
     reader.fail("seeds", "is " + std::to_string(study.seeds) + ", must be 1 to 1000");
   study.error = reader.text("error", study.error);
   study.seconds = reader.text("seconds", study.seconds);
-  const std::vector<std::string> stages = {"all", "simulate", "acquire", "align", "reconstruct"};
+  const std::vector<std::string>& stages = timed_stages();
   if (std::find(stages.begin(), stages.end(), study.seconds) == stages.end())
     reader.fail("seconds", "is \"" + study.seconds +
                                "\", must be all, simulate, acquire, align or reconstruct");

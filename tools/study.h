@@ -42,6 +42,9 @@ struct Study {
   std::string seconds = "all";         // of which stage count
 };
 
+// What "seconds" may be: "all" or a stage.
+const std::vector<std::string>& timed_stages();
+
 // A recipe's "tradeoff":
 //   "vary": [{"key": "reconstruct/depth", "values": [6, 7, 8]},
 //            {"name": "scanner", "choices": [{"name": "stereo", "set": {FIELD: VALUE, ...}},

@@ -5,9 +5,13 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace scan {
 namespace {
+
+constexpr std::size_t share_of_grid = 5;
+constexpr double model_slack = 1.5;  // so far the model's seconds may be off
 
 bool is_known(const StudyPoint& point) {
   return std::isfinite(point.error);
@@ -77,6 +81,83 @@ std::vector<Setting> star(const Study& study) {
   return settings;
 }
 
+int fields_apart(const Setting& a, const Setting& b) {
+  int apart = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) apart += a[k] != b[k];
+  return apart;
+}
+
+class Search {
+ public:
+  Search(const Study& study, double tolerance, const Measure& measure)
+      : study_(study),
+        tolerance_(tolerance),
+        measure_(measure),
+        most_runs_(grid(study).size() * static_cast<std::size_t>(study.seeds) / share_of_grid) {}
+
+  void try_once(const Setting& setting) {
+    tried_.push_back(measure_(setting, 1));
+    ++runs_;
+  }
+
+  // Until what is advised has run with all seeds.
+  void follow_the_model() {
+    while (true) {
+      const auto points = estimated(study_, tried_);
+      const auto best = advised(points, tolerance_);
+      if (!best || points[*best].runs >= static_cast<std::size_t>(study_.seeds)) return;
+      if (points[*best].runs == 0)
+        try_once(points[*best].setting);
+      else
+        run_all_seeds(points[*best].setting);
+    }
+  }
+
+  // Tries one more setting that may be cheaper than the advised one, or better where none is within
+  // the tolerance: of those that differ in the fewest fields the best by the model. False if there
+  // is none, or no runs for it are left.
+  bool look_beside_the_advice() {
+    if (runs_ + static_cast<std::size_t>(study_.seeds) > most_runs_) return false;
+    const auto points = estimated(study_, tried_);
+    const auto best = advised(points, tolerance_);
+    if (!best) return false;
+    const StudyPoint& incumbent = points[*best];
+    const double most_seconds = incumbent.error <= tolerance_
+                                    ? model_slack * incumbent.seconds
+                                    : std::numeric_limits<double>::infinity();
+    const StudyPoint* next = nullptr;
+    const auto rank = [&](const StudyPoint& point) {
+      return std::pair(fields_apart(point.setting, incumbent.setting), point.error);
+    };
+    for (const StudyPoint& point : points)
+      if (point.runs == 0 && point.seconds < most_seconds && (!next || rank(point) < rank(*next)))
+        next = &point;
+    if (!next) return false;
+    try_once(next->setting);
+    return true;
+  }
+
+  std::vector<StudyPoint> take() {
+    mark_front(tried_);
+    return std::move(tried_);
+  }
+
+ private:
+  void run_all_seeds(const Setting& setting) {
+    const auto found = std::find_if(tried_.begin(), tried_.end(), [&](const StudyPoint& point) {
+      return point.setting == setting;
+    });
+    *found = measure_(setting, study_.seeds);
+    runs_ += static_cast<std::size_t>(study_.seeds) - 1;
+  }
+
+  const Study& study_;
+  double tolerance_;
+  const Measure& measure_;
+  std::size_t most_runs_, runs_ = 0;
+  std::vector<StudyPoint> tried_;
+};
+
 }  // namespace
 
 void mark_front(std::vector<StudyPoint>& points) {
@@ -109,25 +190,11 @@ std::vector<StudyPoint> search_grid(const Study& study, const Measure& measure) 
 
 std::vector<StudyPoint> search_adaptively(const Study& study, double tolerance,
                                           const Measure& measure) {
-  std::vector<StudyPoint> tried;
-  for (const Setting& setting : star(study)) tried.push_back(measure(setting, 1));
-  while (true) {
-    const auto points = estimated(study, tried);
-    const auto best = advised(points, tolerance);
-    if (!best) break;
-    const StudyPoint& next = points[*best];
-    if (next.runs >= static_cast<std::size_t>(study.seeds)) break;
-    if (next.runs == 0) {
-      tried.push_back(measure(next.setting, 1));
-      continue;
-    }
-    const auto found = std::find_if(tried.begin(), tried.end(), [&](const StudyPoint& point) {
-      return point.setting == next.setting;
-    });
-    *found = measure(next.setting, study.seeds);
-  }
-  mark_front(tried);
-  return tried;
+  Search search(study, tolerance, measure);
+  for (const Setting& setting : star(study)) search.try_once(setting);
+  search.follow_the_model();
+  while (search.look_beside_the_advice()) search.follow_the_model();
+  return search.take();
 }
 
 }  // namespace scan

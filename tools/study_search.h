@@ -18,11 +18,13 @@ struct StudyPoint {
   std::size_t runs = 0;
   double error = 0;  // mean over the seeds; NaN if any run failed
   double least_error = 0, most_error = 0;
+  std::vector<double> errors;  // seed by seed; NaN for a run that failed
   std::string unit;
-  double seconds = 0;     // mean of those that count
-  StageCosts stages;      // mean seconds, largest memory
-  std::string trouble;    // of the first run that failed
-  bool on_front = false;  // no other is both as good and as fast
+  double seconds = 0;                // mean of those that count
+  std::vector<double> seed_seconds;  // seed by seed
+  StageCosts stages;                 // mean seconds, largest memory
+  std::string trouble;               // of the first run that failed
+  bool on_front = false;             // no other is both as good and as fast
 };
 
 // Marks the points of the Pareto front.
@@ -41,8 +43,9 @@ std::vector<StudyPoint> search_grid(const Study& study, const Measure& measure);
 // The setting in the middle of all lists and those that differ from it in one field, with one seed;
 // then what is advised among the settings tried and the others as a model sees them, until that one
 // has run with all its seeds. In the model each field's value multiplies error and seconds by a
-// factor of its own, fitted to what was tried. Finds what the grid finds where that holds nearly;
-// where it does not, what was tried corrects it. Returns all that it tried.
+// factor of its own, fitted to what was tried. Finds what the grid finds where that holds nearly.
+// Where it does not, what was tried corrects it: up to a fifth of the grid's runs, settings beside
+// the advised one are tried, too. Returns all that it tried.
 std::vector<StudyPoint> search_adaptively(const Study& study, double tolerance,
                                           const Measure& measure);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "libscan/core/error.h"
@@ -51,6 +52,38 @@ std::string said(const Spared& spared) {
   return text;
 }
 
+bool holds_any(const std::string& figure, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](const char* word) { return figure.find(word) != std::string::npos; });
+}
+
+// What is spared one after another, and what is left when all is.
+struct SparingSteps {
+  std::vector<std::pair<std::string, Spared>> spared;
+  std::string rest;
+};
+
+// True poses would leave nothing of a pose's error: there registration is what is left, as the
+// decoding of exact signals is of a range's.
+SparingSteps sparing_steps(const std::string& figure) {
+  const bool of_poses = holds_any(
+      figure, {"pose_error", "rotation_error", "translation_error", "registration_error"});
+  const bool of_ranges = holds_any(figure, {"range_error", "ray_hit"});
+  SparingSteps steps{.spared = {},
+                     .rest = of_poses    ? "registration"
+                             : of_ranges ? "decoding"
+                                         : "reconstruction and sampling"};
+  Spared spared{.poses = !of_poses && !of_ranges};
+  if (spared.poses) steps.spared.emplace_back("registration", spared);
+  spared.calibration = true;
+  steps.spared.emplace_back("miscalibration", spared);
+  spared.effects = true;
+  steps.spared.emplace_back("effects of light and device", spared);
+  spared.noise = true;
+  steps.spared.emplace_back("noise", spared);
+  return steps;
+}
+
 }  // namespace
 
 std::string setting_text(const Study& study, const Setting& setting) {
@@ -90,10 +123,12 @@ StudyPoint StudyWork::measure(const Case& in, const Setting& setting, int seeds)
   for (int i = 0; i < seeds; ++i) {
     const RunOutcome outcome = run(in, setting, i, {});
     ++point.runs;
+    point.errors.push_back(outcome.error);
+    point.seed_seconds.push_back(seconds_of(study_, outcome.stages));
     point.error += outcome.error / seeds;
     point.least_error = std::min(point.least_error, outcome.error);
     point.most_error = std::max(point.most_error, outcome.error);
-    point.seconds += seconds_of(study_, outcome.stages) / seeds;
+    point.seconds += point.seed_seconds.back() / seeds;
     for (const auto& [stage, cost] : outcome.stages) {
       point.stages[stage].seconds += cost.seconds / seeds;
       point.stages[stage].peak_mib = std::max(point.stages[stage].peak_mib, cost.peak_mib);
@@ -105,11 +140,7 @@ StudyPoint StudyWork::measure(const Case& in, const Setting& setting, int seeds)
 }
 
 std::vector<ErrorSource> StudyWork::sources(const Case& in, const Setting& setting) {
-  const std::vector<std::pair<std::string, Spared>> steps = {
-      {"registration", {.poses = true}},
-      {"miscalibration", {.poses = true, .calibration = true}},
-      {"effects of light and device", {.poses = true, .calibration = true, .effects = true}},
-      {"noise", {.poses = true, .calibration = true, .effects = true, .noise = true}}};
+  const SparingSteps steps = sparing_steps(study_.error);
   const double all = mean_square(in, setting, {});
   std::vector<ErrorSource> sources;
   const auto add = [&](const std::string& source, double square) {
@@ -117,21 +148,24 @@ std::vector<ErrorSource> StudyWork::sources(const Case& in, const Setting& setti
     sources.push_back({source, kept / all, std::sqrt(kept)});
   };
   double left = all;
-  for (const auto& [source, spared] : steps) {
+  for (const auto& [source, spared] : steps.spared) {
     const double less = mean_square(in, setting, spared);
     if (!(all > 0) || !std::isfinite(less)) return {};
+    if (less == left) continue;  // to the bit: there is no such source here
     add(source, left - less);
     left = less;
   }
-  add("reconstruction and sampling", left);
+  add(steps.rest, left);
   return sources;
 }
 
 RunOutcome StudyWork::run(const Case& in, const Setting& setting, int seed, const Spared& spared) {
+  const std::string name = run_name(study_, in, setting, seed, spared);
+  if (const auto found = outcomes_.find(name); found != outcomes_.end()) return found->second;
   const std::uint64_t run_seed = seed_ + static_cast<std::uint64_t>(seed);
   const RunOutcome outcome =
-      runs_.run(run_name(study_, in, setting, seed, spared),
-                with_setting(recipe_, study_, in, setting), run_seed, study_.error, spared);
+      runs_.run(name, with_setting(recipe_, study_, in, setting), run_seed, study_.error, spared);
+  outcomes_[name] = outcome;
   ++done_;
   console_.log(
       "run " + std::to_string(done_) + ": " + (in.name.empty() ? "" : in.name + ": ") +

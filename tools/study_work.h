@@ -4,6 +4,7 @@
 // from.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -35,7 +36,9 @@ class StudyWork {
   StudyPoint measure(const Case& in, const Setting& setting, int seeds);
 
   // What the setting's error consists of, by sparing the runs one source after another: the poses'
-  // errors, miscalibration, effects, noise; the rest is the surface's own. Empty if a run fails.
+  // errors, miscalibration, effects, noise; the rest is the surface's own. Of a pose's error the
+  // rest is registration, of a range's the decoding. Sources that changed no run are left out.
+  // Empty if a run fails.
   std::vector<ErrorSource> sources(const Case& in, const Setting& setting);
 
  private:
@@ -49,6 +52,7 @@ class StudyWork {
   std::uint64_t seed_ = 1;
   std::string name_;
   StudyRuns runs_;
+  std::map<std::string, RunOutcome> outcomes_;  // by the run's name
   std::size_t done_ = 0, total_ = 0;
   Stopwatch watch_;
 };

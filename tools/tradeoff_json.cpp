@@ -22,6 +22,8 @@ ordered_json point_json(const Study& study, const CaseResult& in, const StudyPoi
   ordered_json stages = ordered_json::object();
   for (const auto& [stage, cost] : point.stages)
     stages[stage] = {{"seconds", cost.seconds}, {"peak_mib", cost.peak_mib}};
+  ordered_json errors = ordered_json::array();
+  for (const double error : point.errors) errors.push_back(number(error));
   return {{"case", in.name},
           {"settings", setting_json(study, point.setting)},
           {"error_m", number(point.error)},
@@ -29,6 +31,7 @@ ordered_json point_json(const Study& study, const CaseResult& in, const StudyPoi
           {"most_error", number(point.most_error)},
           {"count", point.runs},
           {"seconds", point.seconds},
+          {"by_seed", {{"error_m", errors}, {"seconds", point.seed_seconds}}},
           {"stages", stages},
           {"on_front", point.on_front},
           {"trouble", point.trouble}};

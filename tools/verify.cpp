@@ -101,15 +101,22 @@ std::vector<Measurement> measure_disparity(const Arguments& arguments) {
   return measurements;
 }
 
+void require_area(const std::string& path, const Mesh& mesh) {
+  if (!(area_m2(mesh) > 0))
+    throw Error(Trouble::input, path + ": none of its triangles has an area");
+}
+
 std::vector<Measurement> measure_files(const Arguments& arguments, Console& console) {
   if (is_disparity(arguments.measured)) return measure_disparity(arguments);
   const TrueSurface truth = read_true_surface(arguments.truth);
+  for (const Mesh& mesh : truth.meshes) require_area(arguments.truth, mesh);
   warn_of_holes(arguments.truth, truth, console);
   const SurfaceErrorOptions options{.f_score_threshold_m = arguments.threshold_m};
   std::vector<Measurement> measurements;
   std::vector<Eigen::Vector3d> points;
   if (holds_triangles(arguments.measured)) {
     const SupportedMesh surface = read_supported_mesh(arguments.measured);
+    require_area(arguments.measured, surface.mesh);
     measurements = surface_error(surface.mesh, truth, options);
     add(measurements, measure_shape(surface, truth));
     if (!arguments.picture.empty()) write_picture(arguments.picture, surface.mesh, truth);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "libscan/acquire/window_bias.h"
 #include "libscan/core/parallel.h"
 
 namespace scan::decoding {
@@ -171,6 +172,19 @@ Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>&
   return {d, 1 / std::sqrt(information(fit) + prior), fit.correlation};
 }
 
+// The noise of the places that tell the curvature is little beside what the pixel's own gains.
+void take_away_window_bias(RefinedDisparity& refined, int half) {
+  const Image<float> with_bias = refined.disparity_px;
+  parallel_for(with_bias.pixels.size(), [&](std::size_t i) {
+    if (std::isnan(with_bias.pixels[i])) return;
+    const int column = static_cast<int>(i % with_bias.width),
+              row = static_cast<int>(i / with_bias.width);
+    const WindowShift shift = window_shift(with_bias, column, row, half);
+    refined.disparity_px.pixels[i] -= static_cast<float>(shift.shift_px);
+    refined.sigma_px.pixels[i] *= static_cast<float>(1 + shift.own_share);
+  });
+}
+
 }  // namespace
 
 RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
@@ -189,6 +203,7 @@ RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_
     result.sigma_px.pixels[i] = static_cast<float>(refined.sigma_px);
     result.correlation.pixels[i] = static_cast<float>(refined.correlation);
   });
+  take_away_window_bias(result, half);
   return result;
 }
 

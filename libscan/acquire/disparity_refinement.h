@@ -20,7 +20,8 @@ struct RefinedDisparity {
 // (Keys 1981). Within the window d follows the slope of the disparity map, and only pixels of the
 // same surface count. The matcher's own disparity counts as a measurement of sigma
 // `match_sigma_px`, which decides where there is no texture. The result stays within 1 px of it and
-// moves only to lower the sum.
+// moves only to lower the sum. At last what the window is off on a curved surface (window_bias.h)
+// is taken away.
 //
 // sigma: 1 / sigma^2 = sum R'^2 / s^2 + 1 / match_sigma_px^2 with the variance s^2 of the
 // residuals, never below the rounding of both images (1/6). It holds the images' noise, not a

@@ -9,9 +9,12 @@
 namespace scan {
 
 struct StereoOptions {
-  int block_px = 5;               // matching window (odd)
-  double max_left_right_px = 1;   // left-right check
-  int edge_margin_px = 0;         // drop matches this near to a depth edge (see depth_edges.h)
+  int block_px = 5;              // matching window (odd)
+  double max_left_right_px = 1;  // left-right check
+  // Matches this near to a depth edge are dropped (see depth_edges.h). Windows reach block_px / 2
+  // beyond the twice block_px / 2 + 1 over which the refinement takes the slope, 8 px for blocks of
+  // 5: nearer to an edge they may be off by half a pixel, which sigma does not know.
+  int edge_margin_px = 0;
   double disparity_sigma_px = 0;  // 0: estimated per pixel from texture and residual
 };
 

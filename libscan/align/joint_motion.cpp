@@ -15,7 +15,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr double negligible = 1e-7;
 // Each is off by the last one's error times the turn.
 constexpr int most_corrections = 5;
-constexpr double damping = 1e-9;  // of the mean diagonal: scans that no chain ties stay
+constexpr double damping = 1e-14;  // of the mean diagonal: scans that no chain ties stay
 
 Pose moved(const Pose& pose, const Vector6& twist, double size_m) {
   Vector6 turn = Vector6::Zero();

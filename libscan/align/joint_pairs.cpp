@@ -25,11 +25,14 @@ std::vector<std::uint32_t> sample_of(const JointCouple& couple, const PreparedCl
   return sample;
 }
 
-double scale_m(const JointCouple& couple, double median_m, const PreparedCloud& target) {
-  const double least_m = 1e-15 * target.radius_m + 1e-150;
-  if (couple.scale_m == unlimited_m) return std::max(first_scale * median_m, least_m);
-  const double wanted_m = std::max(last_scale * median_m, narrowing * couple.scale_m);
-  return std::max(std::min(wanted_m, couple.scale_m), least_m);
+double last_scale_m(double median_m, const PreparedCloud& target) {
+  return std::max(last_scale * median_m, 1e-15 * target.radius_m + 1e-150);
+}
+
+// Of the couple's form, on the way to the last one.
+double scale_m(const JointCouple& couple, double last_m) {
+  if (couple.scale_m == unlimited_m) return first_scale / last_scale * last_m;
+  return std::min(std::max(last_m, narrowing * couple.scale_m), couple.scale_m);
 }
 
 // The last scale is that many sigmas of normal noise.
@@ -107,8 +110,10 @@ JointForm joint_form(const JointCouple& couple, const PreparedCloud& source,
   const PairFinder finder(source, target, options);
   std::vector<Match> matches;
   finder.find(pose, sample, matches);
-  const WelschLoss loss{scale_m(couple, finder.median_residual_m(matches), target)};
+  const double last_m = last_scale_m(finder.median_residual_m(matches), target);
+  const WelschLoss loss{scale_m(couple, last_m)};
   form.scale_m = loss.scale_m;
+  form.narrowing = loss.scale_m > last_m;
   std::vector<Couple> couples = finder.kept(sample, matches, {.loss = loss});
   if (!target_rim.empty())
     std::erase_if(couples, [&](const Couple& one) { return target_rim[one.target]; });

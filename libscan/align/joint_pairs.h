@@ -36,8 +36,9 @@ struct JointForm {
   std::size_t asked = 0;  // points of the source
   std::size_t pairs = 0;
   DataFrame frame;
-  double scale_m = 0;  // of the loss
-  double rms_m = 0;    // of the residuals, weighted
+  double scale_m = 0;      // of the loss
+  bool narrowing = false;  // it is still wider than the residuals ask for
+  double rms_m = 0;        // of the residuals, weighted
   Matrix6 a = Matrix6::Zero();
   Vector6 b = Vector6::Zero();
   Matrix6 apparent = Matrix6::Zero();  // what the planes seem to fix (observability.h), and

@@ -25,7 +25,6 @@ constexpr std::size_t most_partners = 16;
 constexpr double reach_in_spacings = 3;
 // Steps below half a standard error change nothing that can be known.
 constexpr double negligible_square = 0.25;
-constexpr double settled_share = 0.99;
 // The loss narrows anew from where the scans came to stand together: what a first narrowing left
 // out at the pairs' poses may be what holds a scan that few motions of its own are told of.
 constexpr int narrowings = 2;
@@ -105,7 +104,8 @@ JointFrame Refinement::frame() const {
   return frame;
 }
 
-// Returns whether the scales have settled.
+// Returns whether all scales follow the residuals. Of many couples one median or another always
+// shrinks a little: until none does takes the longer, the more there are, and moves nothing.
 bool Refinement::find_pairs(std::vector<JointDetail>* details) {
   std::vector<JointForm> all(couples_.size());
   std::vector<JointDetail> more(details ? couples_.size() : 0);
@@ -123,7 +123,7 @@ bool Refinement::find_pairs(std::vector<JointDetail>* details) {
   bool settled = true;
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (all[k].pairs == 0) continue;
-    settled = settled && all[k].scale_m >= settled_share * couples_[k].scale_m;
+    settled = settled && !all[k].narrowing;
     couples_[k].scale_m = all[k].scale_m;
     forms_.push_back(all[k]);
     if (details) details->push_back(std::move(more[k]));

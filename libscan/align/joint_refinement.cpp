@@ -12,9 +12,10 @@ std::vector<Vector6> joint_step(std::span<const JointForm> forms, const JointFra
                                 const JointBasis& weak) {
   const JointSystem system(forms, frame);
   if (system.rows() == 0) return std::vector<Vector6>(frame.centres.size(), Vector6::Zero());
-  const WithholdingSolver solver(
-      matrix_of(system, system.sum([](const JointForm& form) { return form.a; })),
-      system.reduced(weak));
+  const WithholdingSolver solver(matrix_of(system, system.sum([](const JointForm& form) -> Matrix6 {
+                                   return form.a + rounding_of(form.a);
+                                 })),
+                                 system.reduced(weak));
   return system.twists(solver.solve(system.right_side()));
 }
 

@@ -46,12 +46,14 @@ JointMatrix matrix_of(const JointSystem& system, const JointEntries& entries) {
   return matrix;
 }
 
-JointMatrix damped(const JointMatrix& a, double share) {
-  JointMatrix sum = a;
-  const double least = 1e-3 * a.diagonal().mean();
+JointMatrix least_diagonal(const JointMatrix& a) {
+  constexpr double share = 1e-14;
+  JointMatrix diagonal(a.rows(), a.cols());
+  diagonal.setIdentity();
+  const double least = std::max(1e-3 * a.diagonal().mean(), 1e-300);
   for (Eigen::Index i = 0; i < a.rows(); ++i)
-    sum.coeffRef(i, i) += share * std::max(a.coeff(i, i), least);
-  return sum;
+    diagonal.coeffRef(i, i) = share * std::max(a.coeff(i, i), least);
+  return diagonal;
 }
 
 struct JointFactor::Cholesky {
@@ -78,7 +80,7 @@ WithholdingSolver::WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak)
     : weak_(std::move(weak)) {
   blocks_ = weak_.cols() > 0 && each_of_one_scan(weak_);
   if (!blocks_) {
-    held_ = damped(a, rounding_share);
+    held_ = a + least_diagonal(a);
     factor_ = std::make_unique<JointFactor>(held_);
     if (weak_.cols() == 0) return;
     reply_ = factor_->solve(weak_);
@@ -89,15 +91,16 @@ WithholdingSolver::WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak)
   JointMatrix rest(a.rows(), a.cols());
   rest.setIdentity();
   const double scale = std::max(a.diagonal().mean(), 1e-300);
-  const JointMatrix projected = projector_ * a * projector_;
-  held_ = damped(projected + scale * (rest - projector_), rounding_share);
+  held_ = projector_ * a * projector_ + scale * (rest - projector_);
+  held_ += least_diagonal(held_);
   factor_ = std::make_unique<JointFactor>(held_);
 }
 
 Eigen::MatrixXd WithholdingSolver::solve(const Eigen::MatrixXd& b) const {
   if (blocks_) return projector_ * factor_->solve(Eigen::MatrixXd(projector_ * b));
-  const Eigen::MatrixXd x = factor_->solve(b);
-  if (weak_.cols() == 0) return x;
+  if (weak_.cols() == 0) return factor_->solve(b);
+  // What b has along them changes nothing but the size of what cancels.
+  const Eigen::MatrixXd x = factor_->solve(b - weak_ * (weak_.transpose() * b));
   return x - reply_ * response_.solve(weak_.transpose() * x);
 }
 

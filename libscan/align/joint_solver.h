@@ -16,8 +16,10 @@ using JointMatrix = Eigen::SparseMatrix<double>;
 
 JointMatrix matrix_of(const JointSystem& system, const JointEntries& entries);
 
-// A + a share of its diagonal, so that what nothing holds stays where it is.
-JointMatrix damped(const JointMatrix& a, double share);
+// What is added to A so that scans which no chain of couples ties to one that is held stay where
+// they are: of the diagonal little more than its rounding, since the least eigenvalue of a chain of
+// n scans falls with n^-4.
+JointMatrix least_diagonal(const JointMatrix& a);
 
 // L D L^T of a symmetric matrix. Throws scan::Error (computation) for a singular one.
 class JointFactor {

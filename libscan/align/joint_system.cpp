@@ -13,7 +13,13 @@ void add_block(JointEntries& entries, Eigen::Index row, Eigen::Index column, con
       entries.push_back({static_cast<int>(row + i), static_cast<int>(column + j), block(i, j)});
 }
 
+constexpr double rounding_share = 1e-10;  // as in observability.cpp
+
 }  // namespace
+
+Matrix6 rounding_of(const Matrix6& matrix) {
+  return rounding_share * std::max(matrix.trace() / 6, 1e-300) * Matrix6::Identity();
+}
 
 Matrix6 twist_to_form(const JointFrame& frame, std::size_t scan, const JointForm& form) {
   Matrix6 carry = Matrix6::Identity();
@@ -52,7 +58,8 @@ JointEntries JointSystem::assemble(std::span<const Matrix6> matrices) const {
 
 JointEntries JointSystem::sum_of(std::span<const JointDetail> details) const {
   std::vector<Matrix6> matrices;
-  for (const JointDetail& detail : details) matrices.push_back(detail.curvature);
+  for (const JointDetail& detail : details)
+    matrices.push_back(detail.curvature + rounding_of(detail.curvature));
   return assemble(matrices);
 }
 

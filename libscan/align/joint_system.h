@@ -12,6 +12,11 @@ namespace scan {
 // Carries a scan's twist to the form's centre and unit.
 Matrix6 twist_to_form(const JointFrame& frame, std::size_t scan, const JointForm& form);
 
+// What rounding may feign in a matrix of a form. Of the form, not of the whole system: a bend of a
+// chain of n scans, most of which each of its couples sees n^-4 of, is as well known as the couples
+// are.
+Matrix6 rounding_of(const Matrix6& matrix);
+
 // One entry of a sparse matrix; entries at the same place add up.
 struct JointEntry {
   int at_row = 0, at_column = 0;

@@ -17,8 +17,7 @@ namespace {
 // standard deviation of 2 N sqrt(neighbours / n) over n planes: each shares its errors with those
 // that its fit has in common with them. What lies five of these above noise is held by the surface.
 constexpr double sigmas_above_noise = 5;
-constexpr double neighbours = 16;         // PrepareOptions
-constexpr double rounding_share = 1e-10;  // as in observability.cpp
+constexpr double neighbours = 16;  // PrepareOptions
 constexpr int subspace_rounds = 30;
 // More weak motions than that are looked for scan by scan, the others held.
 constexpr Eigen::Index most_together = 48;
@@ -47,7 +46,7 @@ double chance_excess(double planes) {
 // The `count` least v^T A v / v^T G v, by inverse iteration on a subspace with Rayleigh-Ritz.
 Eigen::MatrixXd least_motions(const JointMatrix& a, const JointMatrix& g, Eigen::Index count) {
   const Eigen::Index columns = std::min(a.rows(), count + spare_columns);
-  const JointFactor factor(damped(a, rounding_share));
+  const JointFactor factor(a + least_diagonal(a));
   Eigen::MatrixXd x(a.rows(), columns);  // any start that has a part of all will do
   for (Eigen::Index i = 0; i < x.rows(); ++i)
     for (Eigen::Index k = 0; k < columns; ++k)
@@ -91,10 +90,9 @@ JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame
   const std::vector<double> planes = planes_of(forms, frame.centres.size());
   JointMatrix limit = matrix_of(system, system.sum([&](const JointForm& form) {
     const double fewer = std::min(planes[form.source], planes[form.target]);
-    return Matrix6((1 + chance_excess(fewer)) * form.noise);
+    return Matrix6((1 + chance_excess(fewer)) * form.noise + rounding_of(form.apparent));
   }));
-  const double least = rounding_share * std::max(apparent.diagonal().mean(), 1e-300);
-  for (Eigen::Index i = 0; i < limit.rows(); ++i) limit.coeffRef(i, i) += least;
+  limit += least_diagonal(apparent);
   const Eigen::Index count = JointFactor(apparent - limit).negatives();
   if (count == 0) return none;
   return system.expanded(count > most_together ? own_motions(apparent, limit)

@@ -173,7 +173,8 @@ Eigen::Matrix3d PairFinder::metric(const Pose& pose, const Couple& couple) const
 
 double PairFinder::shown_share(const Pose& pose, std::span<const Couple> couples,
                                const WelschLoss& loss) const {
-  const double step_m = 0.3 * loss.scale_m;
+  // A loss without a scale is that of squares, which any step tells.
+  const double step_m = 0.3 * std::min(loss.scale_m, target_.radius_m);
   const auto pull_m = [&](double residual_m) { return loss.weight(residual_m) * residual_m; };
   double shown_m = 0, whole_m = 0;
   const auto probe = [&](const auto& search) {

@@ -35,7 +35,28 @@ std::string listed(std::string_view name, const Units& units) {
   return text;
 }
 
+const Units& units_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::length:
+      return length_units;
+    case Quantity::angle:
+      return angle_units;
+    case Quantity::time:
+      return time_units;
+    case Quantity::frequency:
+      break;
+  }
+  return frequency_units;
+}
+
 }  // namespace
+
+std::vector<std::string> unit_suffixes(Quantity quantity) {
+  std::vector<std::string> suffixes;
+  for (const auto& [suffix, scale] : units_of(quantity))
+    suffixes.insert(scale == 1 ? suffixes.begin() : suffixes.end(), suffix);
+  return suffixes;
+}
 
 JsonReader::JsonReader(const json& object, std::string place)
     : object_(&object), place_(std::move(place)) {

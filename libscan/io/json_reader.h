@@ -17,6 +17,10 @@
 
 namespace scan {
 
+// What a key with a unit holds, and the suffixes that name its unit: "_m", "_mm", ... (SI first).
+enum class Quantity { length, angle, time, frequency };
+std::vector<std::string> unit_suffixes(Quantity quantity);
+
 // A view on one JSON object. Each getter marks its key as known; `finish()` refuses what is left.
 // Lengths carry their unit in the key: length_m("radius") reads radius_m, _mm, _um or _nm
 // and returns metres; angle_rad reads _deg or _rad; time_s reads _s, _ms, _us or _ns; frequency_hz

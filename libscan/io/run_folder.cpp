@@ -16,11 +16,26 @@ namespace scan {
 namespace {
 
 constexpr const char* record_name = "stages.json";
-constexpr std::array<const char*, 16> run_names = {
-    record_name,    "recipe.json",     "effects.json", "scans",
-    "raw",          "truth",           "poses.tum",    "alignment.json",
-    "aligned.ply",  "pose_trace.json", "surface.ply",  "reconstruction.json",
-    "verdict.json", "report.html",     "report.json",  "report.csv"};
+constexpr std::array<const char*, 20> run_names = {record_name,
+                                                   "recipe.json",
+                                                   "effects.json",
+                                                   "simulation",
+                                                   "simulation.json",
+                                                   "timings",
+                                                   "timings.json",
+                                                   "scans",
+                                                   "raw",
+                                                   "truth",
+                                                   "poses.tum",
+                                                   "alignment.json",
+                                                   "aligned.ply",
+                                                   "pose_trace.json",
+                                                   "surface.ply",
+                                                   "reconstruction.json",
+                                                   "verdict.json",
+                                                   "report.html",
+                                                   "report.json",
+                                                   "report.csv"};
 
 bool holds_run(const std::filesystem::path& path) {
   return std::any_of(run_names.begin(), run_names.end(),

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The folder of one run, and which of its stages are done.
 //
-//   recipe.json effects.json scans/000.ply ... raw/000/... truth/ alignment.json poses.tum
-//   pose_trace.json aligned.ply surface.ply reconstruction.json verdict.json report.html
-//   report.json report.csv stages.json
+//   recipe.json effects.json scans/000.ply ... raw/000/... truth/ simulation/000.json ...
+//   simulation.json alignment.json poses.tum pose_trace.json aligned.ply surface.ply
+//   reconstruction.json verdict.json report.html report.json report.csv stages.json
+//   timings.json timings/000.json ...
 //
 // stages.json records each finished stage: the fingerprint of what it was made from and one for
-// each file that it wrote. It holds no times: a run's files do not depend on the number of threads.
+// each file that it wrote. Seconds stand in timings alone: no other file depends on the number of
+// threads or of processes.
 #pragma once
 
 #include <filesystem>

@@ -79,14 +79,17 @@ std::vector<RayTruth> read_rays(const std::filesystem::path& path) {
 
 }  // namespace
 
-void write_truth(const std::filesystem::path& folder, const Truth& truth) {
+void write_true_rays(const std::filesystem::path& folder, std::size_t scan,
+                     const std::vector<RayTruth>& rays) {
+  write_ply(folder / numbered(scan, ".ply"), ply_from(rays));
+}
+
+void write_true_scene(const std::filesystem::path& folder, const TrueSurface& surface,
+                      const std::vector<Pose>& world_from_scanner) {
   std::vector<NamedPose> poses;
-  for (std::size_t i = 0; i < truth.scans.size(); ++i) {
-    poses.push_back({std::to_string(i), truth.scans[i].world_from_scanner});
-    write_ply(folder / numbered(i, ".ply"), ply_from(truth.scans[i].rays));
-  }
+  for (const Pose& pose : world_from_scanner) poses.push_back({std::to_string(poses.size()), pose});
   write_poses_tum(folder / "poses.tum", poses);
-  write_surface(folder, truth.surface);
+  write_surface(folder, surface);
 }
 
 Truth read_truth(const std::filesystem::path& folder) {

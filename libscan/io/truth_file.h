@@ -13,9 +13,13 @@
 
 namespace scan {
 
-// Into an existing folder. All doubles come back to the bit but the rotations, which go through a
-// quaternion (2e-15 rad). Scans are named by their number: "000", "001", ...
-void write_truth(const std::filesystem::path& folder, const Truth& truth);
+// Into an existing folder, a scan at a time and the rest, in any order. All doubles come back to
+// the bit but the rotations, which go through a quaternion (2e-15 rad). Scans are named by their
+// number: "000", "001", ...
+void write_true_rays(const std::filesystem::path& folder, std::size_t scan,
+                     const std::vector<RayTruth>& rays);
+void write_true_scene(const std::filesystem::path& folder, const TrueSurface& surface,
+                      const std::vector<Pose>& world_from_scanner);
 Truth read_truth(const std::filesystem::path& folder);
 
 // A reference surface by file; scan::Error (input) if it is empty. A mesh (any format of read_mesh)

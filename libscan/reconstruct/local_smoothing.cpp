@@ -12,11 +12,14 @@
 namespace scan {
 namespace {
 
-constexpr double samples_per_region = 50;
+// Regions only have to be small against the reach of the sums. But one must hold the scatter on
+// both sides of its surface, 3 sigma each way: samples of one side alone gain from any fit that
+// leans to them.
+constexpr double samples_per_region = 12, sigmas_per_region = 6;
 // Two fits differ by the same waves over some lengths: sums must reach over several such, or chance
 // decides. Each pass of around() spreads by a variance of half a region's width squared.
 constexpr double reach_in_lengths = 2;
-constexpr int most_passes = 16;
+constexpr int most_passes = 64;
 
 std::uint64_t key_of(const Eigen::Vector3i& cell) {
   return static_cast<std::uint64_t>(cell[2]) << 42 | static_cast<std::uint64_t>(cell[1]) << 21 |
@@ -43,7 +46,8 @@ double posterior_variance(double area, double length) {
 }
 
 LocalSmoothing::LocalSmoothing(const Samples& samples) : samples_(samples) {
-  const double cell = std::sqrt(samples_per_region * median(samples.area));
+  const double cell = std::max(std::sqrt(samples_per_region * median(samples.area)),
+                               sigmas_per_region * median(samples.sigma));
   std::vector<std::uint64_t> keys, of_sample;
   const auto place_of = [&](const Eigen::Vector3d& u) {
     return Eigen::Vector3i((u / cell).array().floor().cast<int>() + 1);

@@ -27,6 +27,9 @@ constexpr double residual_of_scattered = 5e-3, residual_of_exact = 1e-3;
 constexpr double tolerated_sigmas = 4, tolerated_spacings = 0.5, tolerated_lengths = 0.5;
 constexpr double tolerated_means = 2;
 constexpr double judged_spacings = 10;
+// Scatter in all directions has flattened the first solution, whose Laplacian is too small; that of
+// the second is right to the next order in scatter.
+constexpr int rounds_of_aim = 2;
 // A trial has only to tell which of two lengths is better.
 constexpr double trial_residual = 0.03;
 constexpr double least_share_lowered = 0.02;
@@ -91,7 +94,7 @@ class Fit {
   void finish() {
     system_.use_levels(levels_ - 1);
     solve(result_.length, options_.relative_residual);
-    if (samples_.scattered_all_around) {
+    for (int round = 0; round < rounds_of_aim && samples_.scattered_all_around; ++round) {
       system_.aim_at_scattered_mean(coefficients());
       improve(options_.relative_residual);
     }

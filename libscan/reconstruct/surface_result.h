@@ -37,7 +37,9 @@ struct SurfaceResult {
   std::vector<double> support_m;       // per vertex: distance to the nearest data point
   std::vector<double> data_spacing_m;  // per vertex: how far apart the data are there
   // Per vertex: one standard deviation across the surface, from the points' scatter and the
-  // smoothing; of the surface beside the nearest point. Empty: the method does not know.
+  // smoothing; of the surface beside the nearest point. Points are taken for independent and their
+  // poses for right: errors that a scan's points share are not in it. Empty: the method does not
+  // know.
   std::vector<double> standard_error_m;
   double finest_cell_m = 0;
   int depth = 0;                  // of the solution's finest cells

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libscan/core/error.h"
+#include "libscan/verify/definitions.h"
 
 namespace scan {
 namespace {
@@ -30,6 +31,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::string hint_for(const std::string& name, const std::vector<Measurement>& measurements) {
   if (measurements.empty()) return "nothing was measured";
+  if (const std::string known = definition(name); !known.empty())
+    return "it is the " + known + ", which this input does not have";
   const auto nearest = std::min_element(
       measurements.begin(), measurements.end(), [&](const Measurement& a, const Measurement& b) {
         return edit_distance(a.name, name) < edit_distance(b.name, name);

@@ -152,16 +152,20 @@ TEST(JointForm, SourceAndTargetMoveAgainstEachOther) {
 
 TEST(JointForm, ItsScaleFollowsTheResidualsButNeverWidensOrJumps) {
   const Setting s = setting(5);
-  const auto scale_after = [&](double last_m) {
+  const auto form_after = [&](double last_m) {
     const JointCouple couple{.source = 0, .target = 1, .scale_m = last_m};
     return joint_form(couple, s.source, s.target, s.world_from_source, s.world_from_target,
-                      s.options)
-        .scale_m;
+                      s.options);
   };
+  const auto scale_after = [&](double last_m) { return form_after(last_m).scale_m; };
   const double first_m = scale_after(unlimited_m), end_m = first_m / 2;  // 3 and 1.5 medians
   EXPECT_DOUBLE_EQ(scale_after(first_m), 0.7 * first_m);
   EXPECT_DOUBLE_EQ(scale_after(1.1 * end_m), end_m);
   EXPECT_DOUBLE_EQ(scale_after(0.9 * end_m), 0.9 * end_m);
+  for (const double wide_m : {unlimited_m, first_m, 1.5 * end_m})
+    EXPECT_TRUE(form_after(wide_m).narrowing) << wide_m;
+  for (const double near_m : {1.4 * end_m, 1.1 * end_m, 0.9 * end_m})
+    EXPECT_FALSE(form_after(near_m).narrowing) << near_m;
 }
 
 TEST(JointForm, TooSmallAnOverlapIsNone) {

@@ -3,7 +3,8 @@
 // Convergence basins: which share of starts each method solves, against how far off they are, for
 // six shapes and four overlaps, libscan's methods beside PCL's and Open3D's; and how fast.
 //
-//   basins_study trials FOLDER STARTS SHAPE...   writes FOLDER/SHAPE.csv, on one thread
+//   basins_study trials FOLDER STARTS SHAPE...   writes FOLDER/SHAPE.csv, on one thread; goes on
+//                                                where an earlier call was ended
 //   basins_study figures FOLDER OUT              tables and pictures of all trials in FOLDER
 #include <cstdio>
 #include <cstdlib>
@@ -78,13 +79,19 @@ void add_start(const std::string& shape, std::uint64_t seed, std::vector<Trial>&
   }
 }
 
-// Written after each start, so that a call may be ended at any time.
+// Written after each start, so that a call may be ended at any time and another one go on.
 void make_trials(const std::filesystem::path& folder, std::size_t starts,
                  const std::vector<std::string>& shapes) {
   make_folder(folder);
   std::vector<std::vector<Trial>> trials(shapes.size());
+  for (const Trial& trial : read_trials(folder))
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      if (shapes[i] == trial.shape) trials[i].push_back(trial);
+  const std::size_t of_a_start =
+      overlaps.size() * (turns_deg.size() + shifts_percent.size()) * methods().size();
   for (std::size_t k = 0; k < starts; ++k)
     for (std::size_t i = 0; i < shapes.size(); ++i) {
+      if (trials[i].size() > k * of_a_start) continue;
       add_start(shapes[i], k + 1, trials[i]);
       write_trials(folder / (shapes[i] + ".csv"), trials[i]);
     }

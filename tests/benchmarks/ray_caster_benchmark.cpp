@@ -3,17 +3,16 @@
 // The ray caster beside raw Embree (native triangles, ROBUST, floats) on the same rays: closest
 // hits and shadow rays, single and in packets, in scan order and at random.
 //
-// All run on one thread, in one process. Each reports `checksum`, the sum of its distances or the
-// count of its shadows, and fails if that is not the others' to single precision. After the runs a
-// table gives each rate as a fraction of raw Embree's, ray by ray and in packets of 16. On a busy
-// machine, add --benchmark_repetitions=5 --benchmark_enable_random_interleaving=true.
+// All run on one thread. Each reports `checksum`, the sum of its distances or the count of its
+// shadows, and fails if that is not the others' to single precision. A table gives each rate as a
+// fraction of raw Embree's. On a busy machine, add --benchmark_repetitions=5
+// --benchmark_enable_random_interleaving=true.
 #include <benchmark/benchmark.h>
 #include <embree3/rtcore.h>
 
 #include <cmath>
-#include <cstdio>
-#include <map>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <string>
 
@@ -46,9 +45,8 @@ Mesh room(int rings) {
 }
 
 struct Bench {
-  explicit Bench(int rings) : mesh(room(rings)), caster(scene_of({mesh})) {}
   Mesh mesh;
-  RayCaster caster;
+  RayCaster caster{scene_of({mesh})};
 };
 
 std::vector<Ray> scan_rays() {
@@ -294,9 +292,10 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   const scan::ThreadLimit one_thread(1);
-  const scan::synth::Bench small(50), medium(160), large(500);
-  scan::synth::add_cases("10k", small);
-  scan::synth::add_cases("100k", medium);
-  scan::synth::add_cases("1M", large);
+  using namespace scan::synth;
+  const Bench small{room(50)}, medium{room(160)}, large{room(500)};
+  add_cases("10k", small);
+  add_cases("100k", medium);
+  add_cases("1M", large);
   return scan::run_rates({"embree-1", "embree-16"});
 }

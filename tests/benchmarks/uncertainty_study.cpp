@@ -3,7 +3,8 @@
 // Whether points know their own uncertainty: mean normalised error squared (1 is honest) and the
 // share inside the stated 95 % interval, for each kind of scanner, target and light, over seeds.
 // Behind each the standard deviation of the mean, taken between seeds, since points of one scan may
-// share their errors; last the bias over the root mean square of the error along the ray.
+// share their errors; last the bias over the root mean square of the error along the ray. "+rim" is
+// the ball with the points whose windows look past its rim, which stereo's edge margin drops.
 //
 // uncertainty_study [seeds]; 20 without an argument.
 #include <cmath>

@@ -17,10 +17,10 @@ TEST(HardPath, ThreeHundredScansInARowStayTied) {
   const test::SimulatedViews path =
       test::simulated_path(test::ScannerNoise::lidar, scans, 30, 0.8, 1);
   const MultiviewResult result = align_scans(path.clouds, path.guesses);
-  std::size_t tied = 0;
-  for (const ScanPose& scan : result.scans)
-    tied += scan.stop == Stop::converged || scan.stop == Stop::degenerate;
-  EXPECT_EQ(tied, scans);
+  // Nothing is free to slide: that the row bends as a whole is as well known as its links are.
+  for (const ScanPose& scan : result.scans) EXPECT_EQ(scan.stop, Stop::converged);
+  // Ten rounds for a path of any length: the step of each holds for all of it.
+  EXPECT_LT(result.rounds, 20);
   const test::LinkErrors errors = test::link_errors(result, path.truth);
   EXPECT_GT(errors.links, 0.9 * scans);
   // A mean of chi-squares over six degrees of freedom has a standard error of sqrt(2 / 6 / 270)

@@ -25,10 +25,19 @@ Truth example() {
   return truth;
 }
 
+void write(const std::filesystem::path& folder, const Truth& truth) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < truth.scans.size(); ++i) {
+    write_true_rays(folder, i, truth.scans[i].rays);
+    poses.push_back(truth.scans[i].world_from_scanner);
+  }
+  write_true_scene(folder, truth.surface, poses);
+}
+
 TEST(TruthFile, BringsBackSurfacePosesAndRays) {
   const TemporaryFolder folder;
   const Truth truth = example();
-  write_truth(folder.path(), truth);
+  write(folder.path(), truth);
   const Truth back = read_truth(folder.path());
   ASSERT_EQ(back.surface.shapes.size(), 1u);
   EXPECT_EQ(std::get<SphereShape>(back.surface.shapes[0].shape).radius_m, 1.0 / 3);
@@ -65,7 +74,7 @@ TEST(TruthFile, TakesAMeshAsSurfaceAndRefusesAnEmptyOne) {
 
 TEST(TruthFile, NamesTheMissingFile) {
   const TemporaryFolder folder;
-  write_truth(folder.path(), example());
+  write(folder.path(), example());
   std::filesystem::remove(folder / "001.ply");
   EXPECT_NE(error_of([&] { read_truth(folder.path()); }).find("001.ply: no such file"),
             std::string::npos);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libscan/core/random.h"
 #include "tests/reconstruct/shapes.h"
 
 namespace scan {
@@ -56,28 +57,30 @@ std::vector<double> all_trusted(const Samples& samples) {
 TEST(LocalSmoothing, ChoosesByRegion) {
   const Samples samples = unit_square(100, 1e-3);
   LocalSmoothing smoothing(samples);
-  for (const double trial : {0.08, 0.04, 0.02}) {
+  for (const double trial : {0.04, 0.02, 0.01}) {
     std::vector<double> residuals;
     for (const auto& u : samples.points) residuals.push_back(u[0] < 0.5 ? 1e-3 : trial);
     smoothing.judge(trial, residuals, all_trusted(samples));
   }
   const std::vector<double> length = smoothing.lengths();
   for (std::size_t i = 0; i < length.size(); ++i) {
-    // Regions are 0.07 wide, one lies across the middle; sums reach three of them, mixed lengths
-    // one more.
-    if (samples.points[i][0] < 0.5 - 0.35) {
-      EXPECT_NEAR(length[i], 0.08, 1e-12);
+    // Regions are sqrt(12 / 10000) wide and one lies across the middle. The sums of the trial 0.02,
+    // the first that is compared, reach ceil(2 (2 * 0.02 / 0.035)^2) = 3 regions, mixed lengths one
+    // more.
+    const double margin = (1 + 3 + 1) * std::sqrt(12e-4);
+    if (samples.points[i][0] < 0.5 - margin) {
+      EXPECT_NEAR(length[i], 0.04, 1e-12);
     }
-    if (samples.points[i][0] > 0.5 + 0.35) {
-      EXPECT_NEAR(length[i], 0.02, 1e-12);
+    if (samples.points[i][0] > 0.5 + margin) {
+      EXPECT_NEAR(length[i], 0.01, 1e-12);
     }
-    EXPECT_GE(length[i], 0.02 - 1e-12);
-    EXPECT_LE(length[i], 0.08 + 1e-12);
+    EXPECT_GE(length[i], 0.01 - 1e-12);
+    EXPECT_LE(length[i], 0.04 + 1e-12);
   }
 }
 
 // What a region's own samples say by chance does not decide over a length that spans many regions:
-// one stripe (regions are 0.07 wide) that a trial makes worse, as much as its two neighbours gain,
+// one stripe (regions are 0.035 wide) that a trial makes worse, as much as its two neighbours gain,
 // keeps the old length if the trial is short and takes the new one if it is long.
 TEST(LocalSmoothing, WeighsALongTrialOverItsReach) {
   const Samples samples = unit_square(100, 1e-3);
@@ -86,12 +89,12 @@ TEST(LocalSmoothing, WeighsALongTrialOverItsReach) {
     smoothing.judge(first, std::vector<double>(samples.points.size(), 1.0), all_trusted(samples));
     std::vector<double> residuals;
     for (const auto& u : samples.points)
-      residuals.push_back(u[0] > 0.4949 && u[0] < 0.5656 ? 1.6 : 0.5);
+      residuals.push_back(u[0] > 0.5196 && u[0] < 0.5543 ? 1.6 : 0.5);
     smoothing.judge(second, residuals, all_trusted(samples));
     double sum = 0, count = 0;
     const std::vector<double> lengths = smoothing.lengths();
     for (std::size_t i = 0; i < lengths.size(); ++i)
-      if (samples.points[i][0] > 0.52 && samples.points[i][0] < 0.54) {
+      if (samples.points[i][0] > 0.53 && samples.points[i][0] < 0.545) {
         sum += lengths[i];
         ++count;
       }
@@ -99,6 +102,23 @@ TEST(LocalSmoothing, WeighsALongTrialOverItsReach) {
   };
   EXPECT_GT(length_in_stripe(0.02, 0.01), 0.012);
   EXPECT_NEAR(length_in_stripe(0.4, 0.2), 0.2, 1e-9);
+}
+
+// A fit that moves the surface by half a sigma to one side is worse for every region, however much
+// nearer to the samples of that side: a region holds both sides.
+TEST(LocalSmoothing, DoesNotJudgeByOneSideOfTheScatter) {
+  const double sigma = 0.05;  // five spacings
+  Samples samples = unit_square(100, sigma);
+  std::vector<double> residuals, moved;
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    RandomStream random(1, 0, i);
+    residuals.push_back(sigma * random.normal());
+    moved.push_back(residuals.back() - sigma / 2);
+    samples.points[i][2] += residuals.back();
+  }
+  LocalSmoothing smoothing(samples);
+  smoothing.judge(0.04, residuals, all_trusted(samples));
+  EXPECT_EQ(smoothing.judge(0.02, moved, all_trusted(samples)), 0);
 }
 
 // Samples that are not trusted do not ask for a length that follows them.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
 
@@ -135,6 +136,50 @@ TEST(BadInput, ScansWithoutOverlapAreNotCalledAligned) {
   EXPECT_NE(outcome.out.find("\"status\": \"error\""), std::string::npos) << outcome.out;
   const std::string alignment = slurp(folder / "aligned/alignment.json");
   EXPECT_NE(alignment.find("no correspondences"), std::string::npos) << alignment;
+}
+
+// Waves of 0.2 m seen between two x, the whole scan shifted by `x_offset`.
+std::string waves_ply(double from_m, double to_m, double x_offset_m) {
+  constexpr int cells = 60;
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(cells * cells) +
+                     "\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
+  for (int i = 0; i < cells * cells; ++i) {
+    const double x = from_m + (to_m - from_m) * (i % cells + 0.5) / cells;
+    const double y = 2 * (i / cells + 0.5) / cells - 1;
+    const double z = 0.2 * std::sin(4 * x) * std::cos(3 * y) + 0.1 * x * y;
+    char line[120];
+    std::snprintf(line, sizeof line, "%.17g %.17g %.17g\n", x + x_offset_m, y, z);
+    text += line;
+  }
+  return text;
+}
+
+// Two scans that belong together, the second off by 1 cm, and one that meets neither: an error, and
+// yet the two poses are there. Grids 27 mm apart of waves of 1 / (0.2 * 16) = 0.3 m radius find
+// each other within a tenth of their spacing.
+TEST(BadInput, AScanThatMeetsNoOtherLeavesTheOthersAligned) {
+  const Folder folder;
+  const std::string a = (folder / "a.ply").string(), b = (folder / "b.ply").string(),
+                    far = (folder / "far.ply").string();
+  spill(a, waves_ply(-1, 0.6, 0));
+  spill(b, waves_ply(-0.6, 1, 0.01));
+  spill(far, waves_ply(-1, 1, 100));
+  const Outcome outcome = run_scan({"align", a, b, far, (folder / "aligned").string(), "--json"});
+  expect_failure(outcome, computation, "alignment.json");
+  const auto alignment = nlohmann::json::parse(slurp(folder / "aligned/alignment.json"));
+  const auto& scans = alignment.at("scans");
+  ASSERT_EQ(scans.size(), 3u);
+  EXPECT_EQ(scans[0].at("stop"), "converged");
+  EXPECT_EQ(scans[1].at("stop"), "converged");
+  EXPECT_EQ(scans[2].at("stop"), "no correspondences");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto shift_m = [&](std::size_t i) {
+      return scans[i].at("world_from_scan").at(axis).at(3).get<double>();
+    };
+    EXPECT_NEAR(shift_m(1), axis == 0 ? -0.01 : 0, 0.0027);
+    EXPECT_EQ(shift_m(2), 0);  // the guess
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder / "aligned/poses.tum"));
 }
 
 // A sphere and a piece of a saddle: nothing ties them. What is known is still written.

@@ -6,7 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
 
 #include "libscan/core/error.h"
 #include "libscan/core/random.h"
@@ -169,6 +174,74 @@ TEST(AdaptiveSearch, AdvisesWhatTheGridAdvisesInAFifthOfTheRuns) {
   }
   EXPECT_GE(same, 45);
   EXPECT_LE(5 * adaptive_runs, grid_runs);
+}
+
+// Grids of real recipes that ran once (datasets/studies/search), looked up instead of run again.
+class RealGrid {
+ public:
+  explicit RealGrid(const std::string& name) {
+    const std::string path = LIBSCAN_SOURCE_DIR "/datasets/studies/search/" + name;
+    const nlohmann::json recipe = nlohmann::json::parse(std::ifstream(path + ".json"));
+    study = read_study(JsonReader(recipe.at("tradeoff"), name));
+    const nlohmann::json done = nlohmann::json::parse(std::ifstream(path + "-grid.json"));
+    for (const auto& run : done.at("runs")) runs_[run.at("settings").dump()] = run.at("by_seed");
+  }
+
+  StudyPoint measure(const Setting& setting, int seeds) {
+    const auto& by_seed = runs_.at(nlohmann::json(setting_json(study, setting)).dump());
+    StudyPoint p{.setting = setting, .runs = static_cast<std::size_t>(seeds)};
+    for (int i = 0; i < seeds; ++i) {
+      const auto& error = by_seed.at("error_m").at(static_cast<std::size_t>(i));
+      p.error += (error.is_number() ? error.get<double>() : failed) / seeds;
+      p.seconds += by_seed.at("seconds").at(static_cast<std::size_t>(i)).get<double>() / seeds;
+      looked_at.insert({setting, i});
+    }
+    return p;
+  }
+
+  Study study;
+  std::set<std::pair<Setting, int>> looked_at;  // what would have run
+
+ private:
+  std::map<std::string, nlohmann::json> runs_;  // by their settings
+};
+
+// For tolerances from below the best error to above the worst: what the short cut advises is within
+// the tolerance whenever the grid has such a setting, in a fifth of the grid's runs. It is the
+// grid's advice at four fifths of them and more, and nowhere costs more than half as much again;
+// settings that differ in what hardly changes the seconds (light, say) are near ties. The line
+// printed has what was measured.
+TEST(AdaptiveSearch, AdvisesWhatTheGridsOfRealRecipesAdvise) {
+  for (const char* name : {"vessel-phase"}) {
+    RealGrid real(name);
+    const Measure measure = [&](const Setting& s, int seeds) { return real.measure(s, seeds); };
+    const auto all = search_grid(real.study, measure);
+    const std::size_t grid_runs = real.looked_at.size();
+    std::vector<double> tolerances{0};
+    for (const StudyPoint& p : all)
+      if (std::isfinite(p.error)) tolerances.push_back(1.001 * p.error);
+    std::size_t most_runs = 0, same = 0, as_cheap = 0;
+    double dearest = 1;
+    for (const double tolerance : tolerances) {
+      real.looked_at.clear();
+      const auto tried = search_adaptively(real.study, tolerance, measure);
+      const StudyPoint wanted = all[*advised(all, tolerance)];
+      const StudyPoint given = tried[*advised(tried, tolerance)];
+      EXPECT_LE(given.error, std::max(tolerance, wanted.error)) << name << " " << tolerance;
+      const double ratio = given.seconds / wanted.seconds;
+      same += given.setting == wanted.setting;
+      as_cheap += ratio <= 1.1;
+      dearest = std::max(dearest, ratio);
+      most_runs = std::max(most_runs, real.looked_at.size());
+    }
+    std::printf(
+        "%-14s %3zu of %3zu runs at most; of %zu tolerances the same advice at %zu, within "
+        "10 %% of its seconds at %zu, %.2f times them at most\n",
+        name, most_runs, grid_runs, tolerances.size(), same, as_cheap, dearest);
+    EXPECT_GE(static_cast<double>(same), 0.8 * static_cast<double>(tolerances.size())) << name;
+    EXPECT_LE(dearest, 1.5) << name;
+    EXPECT_LE(5 * most_runs, grid_runs) << name;
+  }
 }
 
 }  // namespace

@@ -90,8 +90,9 @@ TEST(Tradeoff, AdvisesEachCaseForItself) {
       if (source.at("source") == name) return source.at("share").get<double>();
     return -1.0;
   };
-  EXPECT_EQ(share(0, "noise"), 0);  // nothing to spare: the same run
-  EXPECT_EQ(share(0, "miscalibration"), 0);
+  EXPECT_EQ(share(0, "noise"), -1);  // nothing to spare: the same run, so no source
+  EXPECT_EQ(share(0, "miscalibration"), -1);
+  EXPECT_GT(share(0, "reconstruction and sampling"), 0.1);  // cells of an eighth of the box
   EXPECT_GT(share(1, "noise"), 0.1);  // 1,500 electrons leave 8 mm of noise in a reading
   const std::string csv = slurp(folder / "out/tradeoff.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
@@ -100,6 +101,27 @@ TEST(Tradeoff, AdvisesEachCaseForItself) {
   EXPECT_EQ(svg.rfind("<svg class='plot' xmlns='http://www.w3.org/2000/svg'", 0), 0u);
   EXPECT_NE(svg.find(">clean<"), std::string::npos);
   EXPECT_NE(svg.find(">dark<"), std::string::npos);
+}
+
+// True poses leave nothing of a pose's error and change nothing of a range's: neither can name the
+// sources behind them. The runs have shot noise alone.
+TEST(Tradeoff, NamesOnlySourcesThatAFigureCanHave) {
+  const Folder folder;
+  const auto sources = [&](const std::string& figure) {
+    const Outcome outcome = tradeoff(
+        folder,
+        R"({"vary": [{"key": "reconstruct/depth", "values": [3]}], "seeds": 1, "error": ")" +
+            figure + "\"}",
+        {"--force"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto json = nlohmann::json::parse(outcome.out);
+    std::string names;
+    for (const auto& source : json.at("cases")[0].at("sources"))
+      names += source.at("source").get<std::string>() + ";";
+    return names;
+  };
+  EXPECT_EQ(sources("pose_error_rms_mean"), "noise;registration;");
+  EXPECT_EQ(sources("range_error_rms"), "noise;decoding;");
 }
 
 // Before the first run, and without leaving a folder that asks for --resume.

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/program.h"
+#include "tests/tools/small_run.h"
 
 namespace scan::test {
 namespace {
@@ -85,6 +85,32 @@ TEST(VerifyInput, ATriangleWithoutAreaDoesNoHarm) {
   EXPECT_NEAR(thin.figure("accuracy_max"), 0, 1e-15);
 }
 
+TEST(VerifyInput, AMeshOfNothingButThinTrianglesIsRefusedByName) {
+  const Folder folder;
+  const std::string flat = "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n";
+  const Judged refused = judged(folder, flat);
+  EXPECT_EQ(refused.outcome.exit_code, input);
+  EXPECT_TRUE(says(refused.outcome, "measured.off: none of its triangles has an area"))
+      << refused.outcome.err;
+  spill(folder / "flat.off", flat);
+  const Outcome truth = run_scan(
+      {"verify", (folder / "measured.off").string(), "--truth", (folder / "flat.off").string()});
+  EXPECT_EQ(truth.exit_code, input);
+  EXPECT_TRUE(says(truth, "flat.off: none of its triangles has an area")) << truth.err;
+}
+
+TEST(VerifyInput, ATruthWithoutCoordinatesIsRefusedByName) {
+  const Folder folder;
+  std::string text = cube_off(1, 0);
+  text.replace(text.find("0 0 0\n"), 5, "0 nan 0");
+  spill(folder / "measured.off", cube_off(1, 0));
+  spill(folder / "nan.off", text);
+  const Outcome outcome = run_scan(
+      {"verify", (folder / "measured.off").string(), "--truth", (folder / "nan.off").string()});
+  EXPECT_EQ(outcome.exit_code, input);
+  EXPECT_TRUE(says(outcome, "nan.off: line")) << outcome.err;
+}
+
 TEST(VerifyInput, ABrokenMeshIsRefusedByName) {
   const Folder folder;
   for (const std::string& broken :
@@ -144,6 +170,25 @@ TEST(VerifyInput, ARunFolderCutShortIsNamedWithItsStage) {
   EXPECT_EQ(verified().exit_code, input) << verified().err;
 }
 
+// Each file of a whole run cut in half, as by a full disk, is named.
+TEST(VerifyInput, EachFileCutShortIsNamed) {
+  const Folder folder;
+  const std::string run = (folder / "run").string();
+  std::filesystem::copy(small_run(), run, std::filesystem::copy_options::recursive);
+  for (const std::string file : {"surface.ply", "poses.tum", "alignment.json", "scans/001.ply",
+                                 "truth/surface.json", "truth/001.ply"}) {
+    const std::filesystem::path path = folder / ("run/" + file);
+    const std::string whole = slurp(path);
+    spill(path, whole.substr(0, whole.size() / 2));
+    const Outcome outcome = run_scan({"verify", run});
+    EXPECT_EQ(outcome.exit_code, input) << file << outcome.err;
+    EXPECT_TRUE(says(outcome, file)) << outcome.err;
+    spill(path, whole);
+  }
+  std::filesystem::remove(folder / "run/scans/001.ply");
+  EXPECT_EQ(run_scan({"verify", run}).exit_code, input);
+}
+
 TEST(VerifyInput, ATruthWithHolesIsSaidToHaveThem) {
   const Folder folder;
   std::string open = cube_off(1, 0);
@@ -177,6 +222,16 @@ TEST(VerifyInput, ALimitOnWhatWasNotMeasuredIsAnError) {
   const Judged slip = judged(folder, cube_off(1, 0), {"--limits", limits});
   EXPECT_EQ(slip.outcome.exit_code, input) << slip.outcome.err;
   EXPECT_TRUE(says(slip.outcome, "accuracy_rms")) << slip.outcome.err;
+  // a figure of runs, and one that an open surface does not have
+  spill(limits, R"([{"name": "pose_error_rms", "at_most_mm": 1, "reason": "the arm"}])");
+  const Judged of_runs = judged(folder, cube_off(1, 0), {"--limits", limits});
+  EXPECT_EQ(of_runs.outcome.exit_code, input);
+  EXPECT_TRUE(says(of_runs.outcome, "which this input does not have")) << of_runs.outcome.err;
+  spill(limits, R"([{"name": "genus", "equals": 0, "reason": "a solid"}])");
+  std::string open = cube_off(1, 0);
+  open.replace(open.find("8 12 0"), 6, "8 11 0");
+  open.erase(open.find("3 1 7 5"));
+  EXPECT_EQ(judged(folder, open, {"--limits", limits}).outcome.exit_code, failed);
   spill(limits, R"([{"name": "accuracy_rms", "at_most_mm": 1, "reason": "the process"}])");
   EXPECT_EQ(judged(folder, cube_off(1.1, 0), {"--limits", limits}).outcome.exit_code, failed);
 }

@@ -21,6 +21,7 @@ struct StatedScanner {
   double light = 1;  // of the electrons that the device collects as a rule
   Scanner scanner;
   Scene scene;
+  AcquireOptions acquire = {};
 };
 
 inline PhaseCamera stated_phase_camera(double light) {
@@ -89,8 +90,18 @@ inline std::vector<StatedScanner> stated_scanners() {
       all.push_back({device, "ball", light, scanner, before_ball});
     };
     add("laser line", stated_laser_line(light), plane(0.18, grey), ball(0.21, 0.03, grey));
-    if (light < 2)  // 8 bits hold no more
-      add("stereo", stated_stereo_pair(light), plane(0.6, printed), ball(0.75, 0.2, printed));
+    if (light < 2) {  // 8 bits hold no more
+      // 8 px: as far as windows reach, see StereoOptions
+      const Scanner pair = stated_stereo_pair(light);
+      all.push_back({"stereo", "plane", light, pair, plane(0.6, printed)});
+      all.push_back({"stereo",
+                     "ball",
+                     light,
+                     pair,
+                     ball(0.75, 0.2, printed),
+                     {.stereo = {.edge_margin_px = 8}}});
+      all.push_back({"stereo", "+rim", light, pair, ball(0.75, 0.2, printed)});
+    }
     add("pulsed", stated_lidar(light), plane(12, grey), ball(12, 2, grey));
     add("phase", stated_phase_camera(light), plane(1.5, grey), ball(1.5, 0.4, grey));
   }
@@ -103,7 +114,7 @@ inline std::vector<Measurement> stated_figures(const StatedScanner& of, std::uin
   const auto frames =
       render(of.scanner, caster, Pose::Identity(), {.seed = seed, .scan = 1}, sensor_effects)
           .frames;
-  const Scan scan = acquire(frames);
+  const Scan scan = acquire(frames, of.acquire);
   const ScanTruth truth{.name = of.device,
                         .world_from_scanner = Pose::Identity(),
                         .rays = true_rays(of.scanner, caster, Pose::Identity())};

@@ -98,10 +98,21 @@ std::string joined_words(const ordered_json& list) {
   return text;
 }
 
+// All in one unit, the largest with four digits.
 std::string coordinates(const ordered_json& position) {
-  std::string text;
-  for (const auto& value : position) text += (text.empty() ? "" : ", ") + exact(value, "m");
-  return text;
+  double largest_m = 0;
+  for (const auto& x : position) largest_m = std::max(largest_m, std::abs(x.get<double>()));
+  const bool in_mm = largest_m < 1;
+  const double unit_m = in_mm ? 1e-3 : 1;
+  const int digits =
+      largest_m > 0 ? 3 - static_cast<int>(std::floor(std::log10(largest_m / unit_m))) : 0;
+  std::string html;
+  for (const auto& x : position) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", std::clamp(digits, 0, 6), x.get<double>() / unit_m);
+    html += (html.empty() ? "" : ", ") + ("<data value=\"" + x.dump() + "\">") + text + "</data>";
+  }
+  return html + (in_mm ? " mm" : " m");
 }
 
 // The unit that a key's ending names.

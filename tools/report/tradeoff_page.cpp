@@ -75,7 +75,7 @@ std::set<std::string> stages_of(const ordered_json& runs) {
 }
 
 std::string heads(const ordered_json& runs) {
-  std::string html = "<h3>Settings</h3><div class=\"wide\"><table><tr>";
+  std::string html = "<h3>Settings</h3><div class=\"wide settings\" tabindex=\"0\"><table><tr>";
   for (const auto& [key, value] : runs.at(0).at("settings").items())
     html += "<th>" + escaped(key) + "</th>";
   for (const char* number : {"error", "least", "most", "runs"})
@@ -169,7 +169,8 @@ std::string tradeoff_parts(const ordered_json& tradeoff) {
         "<p><strong>" + escaped(in.at("advice").at("text").get<std::string>()) + "</strong></p>";
   html +=
       "<p>Filled marks are the front: nothing tried is both better and faster. A ring is the "
-      "advice. Bars reach from the least to the most of the seeds. " +
+      "advice. Lines go through what each curve can at best for so many seconds; bars reach from "
+      "the least to the most of the seeds. " +
       std::to_string(tradeoff.at("threads").get<int>()) + " threads, " +
       escaped(tradeoff.at("machine").get<std::string>()) + ".</p>";
   return html + plot_of(tradeoff) + source_table(tradeoff.at("cases"), unit) +

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "tools/console.h"
 #include "tools/report/html.h"
@@ -84,13 +85,19 @@ std::string frame(const Axis& x, const Axis& y, const TradeoffLabels& labels,
   return svg;
 }
 
+// Through the curve's own front: what it can at best for so many seconds.
 std::string line_through(std::vector<TradeoffMark> marks, const Axis& x, const Axis& y,
                          const char* colour) {
-  std::sort(marks.begin(), marks.end(),
-            [](const TradeoffMark& a, const TradeoffMark& b) { return a.seconds < b.seconds; });
+  std::sort(marks.begin(), marks.end(), [](const TradeoffMark& a, const TradeoffMark& b) {
+    return std::pair(a.seconds, a.error) < std::pair(b.seconds, b.error);
+  });
   std::string points;
-  for (const TradeoffMark& mark : marks)
+  double best = std::numeric_limits<double>::infinity();
+  for (const TradeoffMark& mark : marks) {
+    if (!(mark.error < best)) continue;
+    best = mark.error;
     points += print("%.1f,%.1f ", x.at(mark.seconds), y.at(mark.error));
+  }
   return print("<polyline fill='none' stroke='%s' stroke-opacity='.45' points='", colour) + points +
          "'/>";
 }

@@ -78,9 +78,10 @@ std::vector<std::string_view> viewer_scripts() {
 
 std::string viewer(const RunRecord& record, const ordered_json& twin, std::size_t most_points) {
   std::string html =
-      "<p class=\"screen\">Drag to turn, with the right button or two fingers to shift, wheel or "
-      "pinch to come nearer. Keyboard: arrow keys turn, with Shift they shift, + and - zoom, Home "
-      "goes back.</p>\n<div class=\"viewer no-webgl\" id=\"viewer\">" +
+      "<div class=\"viewer no-webgl\" id=\"viewer\"><p class=\"screen guide\">Drag to turn, with "
+      "the "
+      "right button or two fingers to shift, wheel or pinch to come nearer. Keyboard: arrow keys "
+      "turn, with Shift they shift, + and - zoom, Home goes back.</p>\n" +
       controls(record) + "<div class=\"stage\" id=\"stage\">" + picture(record, twin) +
       "<canvas id=\"canvas\" tabindex=\"0\" role=\"img\" hidden aria-label=\"Interactive 3D view "
       "of the surface and the scans; arrow keys turn it\"></canvas></div>\n"
