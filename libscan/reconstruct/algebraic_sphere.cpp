@@ -7,11 +7,17 @@
 
 namespace scan {
 
+double AlgebraicSphere::gradient_on_sphere() const {
+  return std::sqrt(std::max(0.0, linear.squaredNorm() - 4 * constant * square));
+}
+
 double AlgebraicSphere::distance(const Eigen::Vector3d& x) const {
   const double value = constant + linear.dot(x) + square * x.squaredNorm();
-  // Pratt's norm: the length of the gradient on the sphere; 0 for a sphere without points.
-  const double on_sphere = std::sqrt(std::max(0.0, linear.squaredNorm() - 4 * constant * square));
-  return 2 * value / (gradient(x).norm() + on_sphere);
+  return 2 * value / (gradient(x).norm() + gradient_on_sphere());
+}
+
+double AlgebraicSphere::mean_value(const SphereSums& sums) const {
+  return constant + (linear.dot(sums.x_) + square * sums.x_dot_x_) / sums.weight_;
 }
 
 void SphereSums::add(double weight, const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
@@ -30,7 +36,6 @@ std::optional<AlgebraicSphere> SphereSums::fit() const {
   if (spread > 1e-6 * x_dot_x_) sphere.square = (x_dot_n_ - x_.dot(n_) / weight_) / (2 * spread);
   sphere.linear = (n_ - 2 * sphere.square * x_) / weight_;
   sphere.constant = -(sphere.linear.dot(x_) + sphere.square * x_dot_x_) / weight_;
-  if (!(n_.norm() > 0.1 * weight_)) return std::nullopt;
   return sphere;
 }
 

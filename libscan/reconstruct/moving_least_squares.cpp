@@ -24,6 +24,7 @@ constexpr double narrowest = 2.5, widest = 20.5;  // support, in spacings
 constexpr double hole = 1;                        // left out about a sample, in spacings
 constexpr double least_gain = 0.99;               // a wider support must be better by this factor
 constexpr double give_up = 1.5;                   // and the search ends where it is so much worse
+constexpr double least_agreement = 0.1;           // of normals, for a fit to all
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 class MlsField {
@@ -52,11 +53,19 @@ class MlsField {
     tree_.within(x, reach, found);
     std::erase_if(found, [&](const Neighbour& n) { return n.distance2_m2 < left_out * left_out; });
     SphereSums sums;
-    for (const Neighbour& n : found)
-      if (const double w = weight(n); w > 0)
-        sums.add(w, samples_.points[n.index] - x, samples_.normals[n.index]);
-    std::optional<AlgebraicSphere> fitted = sums.fit();
-    return fitted ? refit(x, found, *fitted) : fitted;
+    const Neighbour* first = nullptr;
+    for (const Neighbour& n : found) {
+      const double w = weight(n);
+      if (!(w > 0)) continue;
+      sums.add(w, samples_.points[n.index] - x, samples_.normals[n.index]);
+      if (!first || n.distance2_m2 < first->distance2_m2) first = &n;
+    }
+    if (!first) return std::nullopt;
+    const bool is_wall = sums.agreement() < least_agreement;
+    const Eigen::Vector3d here = is_wall
+                                     ? samples_.normals[first->index]
+                                     : sums.fit()->gradient(Eigen::Vector3d::Zero()).normalized();
+    return refit(found, x, here, is_wall);
   }
 
   double value(const Eigen::Vector3d& x) const {
@@ -88,21 +97,31 @@ class MlsField {
   }
 
   // Weights less the more a normal differs from the fit's gradient there (Oztireli 2009, eq. 15).
-  std::optional<AlgebraicSphere> refit(const Eigen::Vector3d& x,
-                                       const std::vector<Neighbour>& found,
-                                       const AlgebraicSphere& last) const {
+  // On a thin wall or in a narrow gap the samples that face elsewhere are fitted too: if each fit
+  // has the other's samples behind it, what is inside is inside both, and if it has them before it,
+  // inside either.
+  std::optional<AlgebraicSphere> refit(const std::vector<Neighbour>& found,
+                                       const Eigen::Vector3d& x, const Eigen::Vector3d& here,
+                                       bool is_wall) const {
     const double tolerance2 = options_.normal_tolerance * options_.normal_tolerance;
-    const Eigen::Vector3d here = last.gradient(Eigen::Vector3d::Zero()).normalized();
-    SphereSums sums;
+    SphereSums near, other;
     for (const Neighbour& n : found) {
       const double w = weight(n);
       if (!(w > 0)) continue;
       const Eigen::Vector3d offset = samples_.points[n.index] - x;
-      const double difference2 = (samples_.normals[n.index] - here).squaredNorm();
-      sums.add(w * std::exp(-difference2 / tolerance2), offset, samples_.normals[n.index]);
+      const Eigen::Vector3d& normal = samples_.normals[n.index];
+      const double difference2 = (normal - here).squaredNorm();
+      near.add(w * std::exp(-difference2 / tolerance2), offset, normal);
+      if (difference2 > tolerance2) other.add(w, offset, normal);
     }
-    const auto fitted = sums.fit();
-    return fitted ? fitted : last;
+    if (near.agreement() < least_agreement) return std::nullopt;
+    const AlgebraicSphere a = *near.fit();
+    if (!is_wall || other.agreement() < least_agreement) return a;
+    const AlgebraicSphere b = *other.fit();
+    const double of_other = a.mean_value(other), of_near = b.mean_value(near);
+    if (of_other * of_near <= 0) return a;
+    const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+    return (a.distance(zero) < b.distance(zero)) == (of_near < 0) ? b : a;
   }
 
   void set_support(double spacings) {

@@ -13,7 +13,9 @@
 #include "libscan/reconstruct/algebraic_sphere.h"
 #include "libscan/reconstruct/followed_surface.h"
 #include "libscan/reconstruct/rbf_level.h"
+#include "libscan/reconstruct/winding_number.h"
 #include "libscan/reconstruct/world_surface.h"
+#include "libscan/search/kd_tree.h"
 
 namespace scan {
 namespace {
@@ -25,17 +27,33 @@ constexpr double relative_residual = 1e-3;  // what is left, the next level take
 constexpr double least_share = 0.02;        // of the samples, for a further level
 constexpr double cell_sigmas = 1.5;         // smaller facets would show the noise alone
 constexpr double most_sigmas = 3;           // that scatter moves a sample
+constexpr double least_far_radius = 0.3;    // finer levels add less than what is known there
+constexpr double nearest_far = 0.5;         // of a level's node spacing, off the samples
+constexpr double far_spacings = 3;          // and of the samples'
+constexpr double far_slack = 0.25;          // of it: how far distances are off between nodes
+constexpr double clearly = 0.25;            // winding number off that of the surface
+constexpr double least_gradient = 1e-3;     // of the first sphere, at full agreement 1
 constexpr int max_iterations = 100;         // of a level
+
+// The radius that a sample's levels halve down to.
+double last_radius(double spacing) {
+  return spacings_in_radius * finest * spacing;
+}
 
 class RbfField {
  public:
   explicit RbfField(const Samples& samples)
-      : samples_(samples), fitted_(samples.points.size()), silent_(samples.points.size(), 0) {
+      : samples_(samples),
+        tree_(samples.points),
+        winding_(samples),
+        fitted_(samples.points.size()),
+        silent_(samples.points.size(), 0) {
     SphereSums sums;
     for (std::size_t i = 0; i < samples.points.size(); ++i)
       sums.add(samples.area[i], samples.points[i] - centre_, samples.normals[i]);
-    // Normals that cancel, as on a plate, tell of no sphere: then one about the cube.
-    if (const auto fitted = sums.fit()) base_ = *fitted;
+    // Sheets whose normals oppose one another tell of no sphere: then one about the cube.
+    if (const auto sphere = sums.fit(); sphere && sphere->gradient_on_sphere() > least_gradient)
+      base_ = *sphere;
     parallel_for(fitted_.size(), [&](std::size_t i) {
       const Eigen::Vector3d x = samples.points[i] - centre_;
       fitted_[i] = {base_.distance(x), base_.gradient(x).normalized()};
@@ -44,8 +62,11 @@ class RbfField {
 
   // Returns the share of the samples that it still has something to say of.
   double add_level(double radius) {
+    radius_ = radius;
     std::vector<std::uint32_t> group_of;
-    RbfLevel level(radius, nodes(radius, group_of));
+    std::vector<RbfNode> all = nodes(radius, group_of);
+    if (radius >= least_far_radius) add_far_nodes(radius, all);
+    RbfLevel level(radius, std::move(all));
     const RbfSolve solved =
         level.solve(radius / spacings_in_radius, relative_residual, max_iterations);
     iterations_ += solved.iterations;
@@ -77,8 +98,13 @@ class RbfField {
   std::size_t unknowns() const { return unknowns_; }
 
  private:
-  // Detail fades towards finer levels: where two in a row found noise alone, there is no more.
-  bool is_left_out(std::size_t i) const { return silent_[i] >= 2; }
+  // Detail fades towards finer levels: where two in a row found noise alone, there is no more. Nor
+  // is there where samples lie too far apart for a level: each would be a bump of its own.
+  bool is_left_out(std::size_t i) const {
+    return silent_[i] >= 2 || radius_ <= last_radius(spacing(i)) / 2;
+  }
+
+  double spacing(std::size_t i) const { return std::sqrt(samples_.area[i]); }
 
   // A sample moved onto the surface so far, as far as scatter may have moved it off: cubes that cut
   // through the scatter would collect its tails.
@@ -118,6 +144,38 @@ class RbfField {
     return all;
   }
 
+  // Places on a lattice away from the samples, where it is clear which side they are on: the
+  // distance from the samples. Without them a sum of functions that only know the surface may
+  // vanish anywhere else too.
+  void add_far_nodes(double radius, std::vector<RbfNode>& all) const {
+    const double width = radius / spacings_in_radius;
+    const auto count = static_cast<int>(std::ceil(1 / width));
+    for (int i = 0; i < count * count * count; ++i) {
+      const Eigen::Vector3d x = width * Eigen::Vector3d(i % count + 0.5, i / count % count + 0.5,
+                                                        i / (count * count) + 0.5);
+      const std::size_t nearest = tree_.nearest(x, unlimited_m)->index;
+      const Eigen::Vector3d away = x - samples_.points[nearest];
+      const double least = std::max(nearest_far * width, far_spacings * spacing(nearest));
+      const double inside = winding_.at(x) - winding_.on_surface();
+      if (away.norm() < least || std::abs(inside) < clearly) continue;
+      const double side = inside > 0 ? -1 : 1;
+      const Jet now = at(x);
+      const Jet wanted{side * away.norm() - now.value,
+                       radius * (side * away.normalized() - now.gradient)};
+      all.push_back({.place = x,
+                     .wanted = wanted,
+                     .slack = std::pow(far_slack * width, 2),
+                     .group = static_cast<std::uint32_t>(all.size())});
+    }
+  }
+
+  Jet at(const Eigen::Vector3d& x) const {
+    const Eigen::Vector3d d = x - centre_;
+    Jet sum{base_.distance(d), base_.gradient(d).normalized()};
+    for (const RbfLevel& level : levels_) sum += level.at(x);
+    return sum;
+  }
+
   RbfNode node(std::span<const std::uint32_t> members, double radius) const {
     RbfNode node{Eigen::Vector3d::Zero(), {}, 0};
     double total = 0;
@@ -136,9 +194,12 @@ class RbfField {
   }
 
   const Samples& samples_;
+  KdTree tree_;
+  WindingNumber winding_;
   const Eigen::Vector3d centre_ = Eigen::Vector3d::Constant(0.5);
   AlgebraicSphere base_{-0.75, Eigen::Vector3d::Zero(), 1};  // about the cube
   std::vector<Jet> fitted_;                                  // at the samples, so far
+  double radius_ = first_radius;                             // of the level that is being added
   std::vector<char> silent_;  // levels in a row that had nothing to say of a sample but noise
   std::vector<RbfLevel> levels_;
   int iterations_ = 0;
@@ -166,12 +227,12 @@ SurfaceResult rbf(const PointCloud& cloud, const RbfOptions& options, const Prog
   const Stopwatch watch;
   const Samples samples = prepare_samples(cloud);
   const double spacing = fine_spacing(samples);
-  const double last_radius = spacings_in_radius * finest * spacing;
+  const double last = last_radius(spacing);
   RbfField field(samples);
   for (double radius = first_radius;; radius /= 2) {
     if (progress)
-      progress("solve", std::log2(first_radius / radius) / std::log2(first_radius / last_radius));
-    if (field.add_level(radius) < least_share || radius <= last_radius) break;
+      progress("solve", std::log2(first_radius / radius) / std::log2(first_radius / last));
+    if (field.add_level(radius) < least_share || radius <= last) break;
   }
   if (progress) progress("surface", 0);
   const double cell = std::max(spacing, cell_sigmas * median(samples.sigma));

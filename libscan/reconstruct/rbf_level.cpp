@@ -138,12 +138,15 @@ void RbfLevel::find_ridges() {
   // means reach about twice as far: over discs, 28 nodes weigh like some 70.
   excess = mean_about(mean_about(excess, true), false);
   ridge_.resize(nodes_.size());
+  silent_.resize(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const auto count = static_cast<double>(first_neighbour_[i + 1] - first_neighbour_[i]);
     // Two standard errors of a variance: what chance alone asks for is not given.
     const double chance = 2 * std::sqrt(2 / (2.5 * count)) * nodes_[i].variance;
     const double signal = excess[i] - chance;
-    ridge_[i] = signal > nodes_[i].variance / most_ridge ? nodes_[i].variance / signal : most_ridge;
+    const double unknown = nodes_[i].variance + nodes_[i].slack;
+    silent_[i] = !(signal > nodes_[i].variance / most_ridge);
+    ridge_[i] = silent_[i] ? most_ridge : std::min(most_ridge, unknown / signal);
   }
 }
 

@@ -14,6 +14,7 @@ struct RbfNode {
   Eigen::Vector3d place;
   Jet wanted;               // value, and gradient times the radius
   double variance = 0;      // of the wanted value
+  double slack = 0;         // mean square by which the level may miss it, though it is no noise
   std::uint32_t group = 0;  // the caller's number for it
 };
 
@@ -29,10 +30,11 @@ class RbfLevel {
   // Nodes in any order; the level keeps them in the order of cells as wide as the radius.
   RbfLevel(double radius, std::vector<RbfNode> nodes);
 
-  // Solves (K + R) c = wanted by conjugate gradients. R is each node's variance over the signal's,
-  // which is how much the squares of the values wanted around it exceed their variances (the method
-  // of moments), by more than two standard errors: where there is nothing but noise, the level
-  // keeps to 0. Normals count as no more certain than a plane fitted one node spacing wide.
+  // Solves (K + R) c = wanted by conjugate gradients. R is each node's variance and slack over
+  // the signal's variance, which is how much the squares of the values wanted around it exceed
+  // their own variances (the method of moments), by more than two standard errors: where there is
+  // nothing but noise, the level keeps to 0. Normals count as no more certain than a plane fitted
+  // one node spacing wide.
   RbfSolve solve(double node_spacing, double relative_residual, int max_iterations);
 
   // At x: value and gradient (not times the radius).
@@ -41,7 +43,7 @@ class RbfLevel {
 
   const std::vector<RbfNode>& nodes() const { return nodes_; }
   // After solve(): whether a node has nothing to say but noise.
-  bool is_silent(std::size_t node) const { return ridge_[node] >= most_ridge; }
+  bool is_silent(std::size_t node) const { return silent_[node]; }
 
  private:
   static constexpr double most_ridge = 1e6;
@@ -57,6 +59,7 @@ class RbfLevel {
   std::vector<RbfNode> nodes_;
   std::vector<Jet> shares_;
   std::vector<double> ridge_;
+  std::vector<char> silent_;
   std::vector<std::uint64_t> cells_;  // that hold nodes, ascending
   std::vector<std::uint32_t> first_;  // node of each cell, and the end
   std::vector<std::size_t> first_neighbour_;

@@ -36,13 +36,37 @@ TEST(AlgebraicSphere, FitsAPlaneExactly) {
               normal.dot(Eigen::Vector3d(0.4, -3, 1)) - 0.1, 1e-12);
 }
 
-TEST(AlgebraicSphere, RefusesNormalsThatCancel) {
+TEST(AlgebraicSphere, TellsNormalsThatCancel) {
   SphereSums sums;
   EXPECT_FALSE(sums.fit());
   sums.add(1, {0, 0, 0}, Eigen::Vector3d::UnitZ());
-  EXPECT_TRUE(sums.fit());
+  EXPECT_EQ(sums.agreement(), 1);
   sums.add(1, {0, 0, 1}, -Eigen::Vector3d::UnitZ());
-  EXPECT_FALSE(sums.fit());
+  EXPECT_EQ(sums.agreement(), 0);
+}
+
+// x^2 + y^2 + z^2 - 1 over (2, 0, 0) once and (0, 0, 1) twice: (3 + 0 + 0) / 3.
+TEST(AlgebraicSphere, HasAMeanOverPoints) {
+  const AlgebraicSphere sphere{-1, Eigen::Vector3d::Zero(), 1};
+  SphereSums points;
+  points.add(1, {2, 0, 0}, Eigen::Vector3d::UnitX());
+  points.add(2, {0, 0, 1}, Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(sphere.mean_value(points), 1, 1e-15);
+}
+
+// All round a closed surface normals cancel, and there is a sphere all the same. A cube's corners,
+// normals along them: the sphere through the corners, gradient 1 there.
+TEST(AlgebraicSphere, FitsAClosedSurface) {
+  SphereSums sums;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d x(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    sums.add(1, x, x.normalized());
+  }
+  EXPECT_NEAR(sums.agreement(), 0, 1e-15);
+  const auto sphere = sums.fit();
+  ASSERT_TRUE(sphere);
+  EXPECT_NEAR(sphere->gradient_on_sphere(), 1, 1e-14);
+  EXPECT_NEAR(sphere->distance(Eigen::Vector3d(3, 0, 0)), 3 - std::sqrt(3), 1e-14);
 }
 
 }  // namespace

@@ -4,8 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "libscan/core/error.h"
 #include "tests/reconstruct/shapes.h"
+#include "tests/reconstruct/solids.h"
 
 namespace scan {
 namespace {
@@ -61,6 +65,30 @@ TEST(Mls, SmoothsNoiseByTheRootOfTheSamples) {
   const SurfaceResult chosen = mls(cloud);
   EXPECT_LT(rms(chosen), 0.01 / std::sqrt(30.0));
   EXPECT_EQ(edge_census(chosen.surface).components, 1u);
+}
+
+// A plate of 1 x 1 x 0.01 m, whose sides are a spacing apart and both lie within every support:
+// without a fit to each side there was no surface between them, but 128 pieces. Its faces are
+// whole: rims may only be where a support, less than six cells, reaches over the plate's edge.
+TEST(Mls, KeepsTheFacesOfAThinPlateWhole) {
+  PointCloud plate = cube_cloud(18'000);
+  std::vector<std::uint32_t> kept;
+  RandomStream random(4, 0, 0);
+  for (std::uint32_t i = 0; i < plate.size(); ++i) {
+    plate.points[i][2] *= 0.01;
+    if (std::abs(plate.normals[i][2]) > 0.5 || random.uniform() < 0.01) kept.push_back(i);
+  }
+  const SurfaceResult result = mls(subset(plate, kept));
+  const EdgeCensus census = edge_census(result.surface);
+  EXPECT_EQ(census.components, 1u);
+  const double rim_m = 0.5 - 6 * result.finest_cell_m;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> triangles;
+  for (const Triangle& t : result.surface.triangles)
+    for (int k = 0; k < 3; ++k) ++triangles[std::minmax({t[k], t[(k + 1) % 3]})];
+  for (const auto& [edge, count] : triangles)
+    if (count == 1) {
+      ASSERT_GT(result.surface.vertices[edge.first].head<2>().cwiseAbs().maxCoeff(), rim_m);
+    }
 }
 
 TEST(Mls, RefusesOptionsOutsideTheirLimits) {
