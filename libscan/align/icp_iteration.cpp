@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libscan/align/extrapolation.h"
 #include "libscan/core/median.h"
 
 namespace scan {
@@ -19,7 +20,11 @@ constexpr std::size_t least_sample = 1000;
 constexpr std::size_t coarse_stride = 4;
 // A step below three tenths of its standard error adds less than a tenth to the error's square.
 constexpr double negligible_share_of_sigma = 0.3;
-constexpr int most_settling = 10;
+// A sample's zero is off by its own standard error, the root of six coordinates' variance: nearer
+// is of no use.
+constexpr double standard_error = 2.45;
+// Steps in all, and since the least one.
+constexpr int most_settling = 20, most_idle = 3;
 // A scale that falls by less is at rest: a tenth wider weighs the noise as well. Where the pose
 // creeps, the scale does so too.
 constexpr double least_narrowing = 0.9, least_creeping = 0.99;
@@ -46,7 +51,7 @@ Step lengthened(Step step, std::span<const Couple> couples, const WelschLoss& lo
     curvatures += loss.curvature(couple.residual_m);
   }
   const double factor = 1 / std::max(least_bend, curvatures / weights);
-  return {factor * step.twist, factor * step.change_m};
+  return {factor * step.twist, factor * step.change_m, step.squares_m2};
 }
 
 }  // namespace
@@ -142,30 +147,36 @@ Vector6 IcpIteration::accept_lower(const State& state, Step step) {
 }
 
 // Partners jump as the pose moves: below the noise the objective is rough, and where it is least is
-// chance. Its gradient, a sum over all pairs, is not: Newton's steps lead to where it vanishes.
-// Returns whether they did, each less than half of the one before; else nothing has moved.
+// chance. Its gradient, a sum over all pairs, is less so: Newton's steps lead to where it vanishes,
+// extrapolated, since the choice of partners hides much of what a motion changes. Returns whether
+// they did, or came as near as the jumps let them; else nothing has moved.
 bool IcpIteration::settle(const State& state, Step step) {
-  const Pose pose = pose_;
-  const std::vector<Match> matches = matches_;
+  const Pose start = pose_;
+  const double enough = stride_ > 1 ? standard_error : negligible_share_of_sigma;
   State here = state;
-  for (int k = 0; k < most_settling && here.couples.size() >= least_pairs; ++k) {
-    const double last_m = step.change_m;
-    const double negligible_m = negligible_share_of_sigma * rms_m(here.couples, weighing_.loss);
-    pose_ = moved(pose_, step.twist, here.frame);
+  Extrapolation extrapolation;
+  Pose best = start;
+  double least_m = unlimited_m;
+  for (int k = 0, at = 0; k < most_settling && here.couples.size() >= least_pairs; ++k) {
+    const double sigma_m = rms_m(here.couples, weighing_.loss);
+    pose_ = moved(pose_, extrapolation.move(step.twist, step.squares_m2, sigma_m), here.frame);
     finder_.find(pose_, sample_, matches_);
-    if (small(step.twist, here.frame) || step.change_m <= negligible_m) return true;
+    if (small(step.twist, here.frame) || step.change_m <= enough * sigma_m) return true;
     here = examine(weighing_);
     step = next_step(here);
-    if (!(step.change_m < last_m)) break;
+    if (step.change_m < least_m)
+      best = pose_, least_m = step.change_m, at = k;
+    else if (k - at >= most_idle)
+      break;
   }
-  pose_ = pose;
-  matches_ = matches;
-  return false;
+  const bool near = least_m <= rms_m(state.couples, weighing_.loss);
+  pose_ = near ? best : start;
+  finder_.find(pose_, sample_, matches_);
+  return near;
 }
 
 // One step. Returns whether another one may follow.
 bool IcpIteration::iterate(IcpResult& result) {
-  if (scale_in_medians_ <= narrowest_scale && stride_ > 1) sample_every(1);
   const State state = narrow();
   if (state.couples.size() < least_pairs) return false;
   const double sigma_m = rms_m(state.couples, weighing_.loss);
@@ -181,7 +192,8 @@ bool IcpIteration::iterate(IcpResult& result) {
   ++result.iterations;
   if (options_.on_iteration)
     options_.on_iteration(result.iterations, global_pose(pose_, source_, target_));
-  if (done) return false;
+  if (done && stride_ == 1) return false;
+  if (done) sample_every(1);
   scale_in_medians_ = std::max(narrowest_scale, narrowing * scale_in_medians_);
   return true;
 }

@@ -119,7 +119,8 @@ Step best_step(const PairFinder& finder, const Pose& pose, std::span<const Coupl
     return rigid_step(finder, pose, couples, loss, frame, withheld);
   const NormalEquations sums = normal_equations(finder, pose, couples, loss, frame);
   const Vector6 twist = solve_withholding(sums.a, sums.b, withheld);
-  return {twist, frame.size_m * std::sqrt(std::max(0.0, twist.dot(sums.a * twist)))};
+  const Matrix6 squares_m2 = frame.size_m * frame.size_m * sums.a;
+  return {twist, std::sqrt(std::max(0.0, twist.dot(squares_m2 * twist))), squares_m2};
 }
 
 Pose moved(const Pose& pose, Vector6 twist, const DataFrame& frame) {

@@ -34,6 +34,7 @@ NormalEquations normal_equations(const PairFinder& finder, const Pose& pose,
 struct Step {
   Vector6 twist = Vector6::Zero();
   double change_m = 0;  // root of the weighted sum of squared changes of the residuals
+  Matrix6 squares_m2 = Matrix6::Zero();  // that sum of any twist t: t^T squares_m2 t
 };
 
 // The step that lowers the weighted squares of the residuals most, with no part along `withheld`:
