@@ -39,8 +39,8 @@ IcpResult icp(const PointCloud& source, const PointCloud& target,
   check(options);
   check_guess(target_from_source_guess);
   const PrepareOptions preparation{.search = options.search};
-  IcpResult result = icp(prepare(source, preparation), prepare(target, preparation),
-                         target_from_source_guess, options);
+  const auto [prepared_source, prepared_target] = prepare_pair(source, target, preparation);
+  IcpResult result = icp(prepared_source, prepared_target, target_from_source_guess, options);
   result.cost.seconds = watch.seconds();
   return result;
 }

@@ -59,9 +59,10 @@ struct IcpOptions {
 // Throws scan::Error (usage) naming the option and its limit.
 void check(const IcpOptions& options);
 
-// Where an iteration began. Within one scale the objective never rises. The last iteration ends
-// where the gradient vanishes: partners jump as the pose moves, so that below the noise the
-// objective is rough and where it is least depends on the start.
+// Where an iteration began. Within one scale the objective never rises, but where all points take
+// the place of the sample that a large source begins with. The last iteration ends where the
+// gradient vanishes: partners jump as the pose moves, so that below the noise the objective is
+// rough and where it is least depends on the start.
 struct IcpState {
   double scale_m = 0;       // of the loss
   double objective_m2 = 0;  // mean loss over the points of the source

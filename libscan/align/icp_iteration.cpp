@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libscan/align/extrapolation.h"
 #include "libscan/core/median.h"
 
 namespace scan {
@@ -14,12 +15,18 @@ namespace {
 // narrowing, so that what has no counterpart pulls no longer. 1.5 medians are one sigma of normal
 // noise.
 constexpr double widest_scale = 3, narrowest_scale = 1.5, narrowing = 0.8;
-// While the scale narrows, so many points of the source at least are asked, one in four.
-constexpr std::size_t least_sample = 1000;
+// While the scale narrows, one in four points of the source is asked where these are enough, and of
+// more than sixteen thousand about four thousand: their noise hides less than the way there is to
+// go, whatever the source's size.
+constexpr std::size_t least_sample = 1000, most_sample = 4 * least_sample;
 constexpr std::size_t coarse_stride = 4;
 // A step below three tenths of its standard error adds less than a tenth to the error's square.
 constexpr double negligible_share_of_sigma = 0.3;
-constexpr int most_settling = 10;
+// A sample's zero is off by its own standard error, the root of six coordinates' variance: nearer
+// is of no use.
+constexpr double standard_error = 2.45;
+// Steps in all, and since the least one.
+constexpr int most_settling = 20, most_idle = 3;
 // A scale that falls by less is at rest: a tenth wider weighs the noise as well. Where the pose
 // creeps, the scale does so too.
 constexpr double least_narrowing = 0.9, least_creeping = 0.99;
@@ -27,26 +34,26 @@ constexpr double least_narrowing = 0.9, least_creeping = 0.99;
 // twice as much as it does.
 constexpr double least_bend = 0.25;
 
-// Every `stride`-th point by its place in the cloud as it was given, so that the choice does not
-// depend on the frame.
+// About one in `stride` points by their places in the cloud as it was given, so that the choice
+// does not depend on the frame. Multiples of the golden section (Weyl 1916, Knuth, TAOCP 3, 6.4):
+// no row length of a scanner falls in step with them, as with whole strides.
 std::vector<std::uint32_t> every(std::size_t stride, const PreparedCloud& source) {
+  constexpr std::uint32_t golden = 0x9e3779b9u;
+  const auto below = static_cast<std::uint32_t>(0xffffffffu / stride);
   std::vector<std::uint32_t> sample;
-  sample.reserve(source.size() / stride + 1);
+  sample.reserve(source.size() / stride + 64);
   for (std::uint32_t i = 0; i < source.size(); ++i)
-    if (source.index[i] % stride == 0) sample.push_back(i);
+    if (golden * source.index[i] <= below) sample.push_back(i);
   return sample;
 }
 
 // The step to where the loss itself is least, to first order, from that to where its weighted
 // squares are.
-Step lengthened(Step step, std::span<const Couple> couples, const WelschLoss& loss) {
-  double weights = 0, curvatures = 0;
-  for (const Couple& couple : couples) {
-    weights += loss.weight(couple.residual_m);
-    curvatures += loss.curvature(couple.residual_m);
-  }
-  const double factor = 1 / std::max(least_bend, curvatures / weights);
-  return {factor * step.twist, factor * step.change_m};
+Step lengthened(Step step) {
+  const double factor = 1 / std::max(least_bend, step.bend);
+  step.twist *= factor;
+  step.change_m *= factor;
+  return step;
 }
 
 }  // namespace
@@ -118,14 +125,14 @@ Step IcpIteration::next_step(const State& state) const {
       best_step(finder_, pose_, state.couples, weighing_.loss, state.frame, state.weak);
   // While the scale still follows the residuals these are of the pose, not of noise.
   if (creeps() || !settled_) return step;
-  return lengthened(step, state.couples, weighing_.loss);
+  return lengthened(step);
 }
 
 // Moves by the step, or by the first of its quarters that does not raise the objective (partners
 // found anew); by nothing when even a negligible part would. Returns what was moved.
 Vector6 IcpIteration::accept_lower(const State& state, Step step) {
   const double before_m2 = finder_.objective_m2(matches_, weighing_);
-  const double negligible_m = negligible_share_of_sigma * rms_m(state.couples, weighing_.loss);
+  const double negligible_m = negligible_share_of_sigma * step.sigma_m;
   while (true) {
     const Pose there = moved(pose_, step.twist, state.frame);
     std::vector<Match> matches = matches_;
@@ -142,36 +149,40 @@ Vector6 IcpIteration::accept_lower(const State& state, Step step) {
 }
 
 // Partners jump as the pose moves: below the noise the objective is rough, and where it is least is
-// chance. Its gradient, a sum over all pairs, is not: Newton's steps lead to where it vanishes.
-// Returns whether they did, each less than half of the one before; else nothing has moved.
+// chance. Its gradient, a sum over all pairs, is less so: Newton's steps lead to where it vanishes,
+// extrapolated, since the choice of partners hides much of what a motion changes. Returns whether
+// they did, or came as near as the jumps let them; else nothing has moved.
 bool IcpIteration::settle(const State& state, Step step) {
-  const Pose pose = pose_;
-  const std::vector<Match> matches = matches_;
+  const Pose start = pose_;
+  const double enough = stride_ > 1 ? standard_error : negligible_share_of_sigma;
   State here = state;
-  for (int k = 0; k < most_settling && here.couples.size() >= least_pairs; ++k) {
-    const double last_m = step.change_m;
-    const double negligible_m = negligible_share_of_sigma * rms_m(here.couples, weighing_.loss);
-    pose_ = moved(pose_, step.twist, here.frame);
+  Extrapolation extrapolation;
+  Pose best = start;
+  double least_m = unlimited_m;
+  for (int k = 0, at = 0; k < most_settling && here.couples.size() >= least_pairs; ++k) {
+    pose_ = moved(pose_, extrapolation.move(step.twist, step.squares_m2, step.sigma_m), here.frame);
     finder_.find(pose_, sample_, matches_);
-    if (small(step.twist, here.frame) || step.change_m <= negligible_m) return true;
+    if (small(step.twist, here.frame) || step.change_m <= enough * step.sigma_m) return true;
     here = examine(weighing_);
     step = next_step(here);
-    if (!(step.change_m < last_m)) break;
+    if (step.change_m < least_m)
+      best = pose_, least_m = step.change_m, at = k;
+    else if (k - at >= most_idle)
+      break;
   }
-  pose_ = pose;
-  matches_ = matches;
-  return false;
+  const bool near = least_m <= step.sigma_m;
+  pose_ = near ? best : start;
+  finder_.find(pose_, sample_, matches_);
+  return near;
 }
 
 // One step. Returns whether another one may follow.
 bool IcpIteration::iterate(IcpResult& result) {
-  if (scale_in_medians_ <= narrowest_scale && stride_ > 1) sample_every(1);
   const State state = narrow();
   if (state.couples.size() < least_pairs) return false;
-  const double sigma_m = rms_m(state.couples, weighing_.loss);
-  result.history.push_back(
-      {weighing_.loss.scale_m, finder_.objective_m2(matches_, weighing_), sigma_m});
   const Step step = next_step(state);
+  result.history.push_back(
+      {weighing_.loss.scale_m, finder_.objective_m2(matches_, weighing_), step.sigma_m});
   const bool last_scale = scale_in_medians_ <= narrowest_scale && settled_;
   bool done = false;
   if (last_scale && !creeps() && settle(state, step))
@@ -181,7 +192,8 @@ bool IcpIteration::iterate(IcpResult& result) {
   ++result.iterations;
   if (options_.on_iteration)
     options_.on_iteration(result.iterations, global_pose(pose_, source_, target_));
-  if (done) return false;
+  if (done && stride_ == 1) return false;
+  if (done) sample_every(1);
   scale_in_medians_ = std::max(narrowest_scale, narrowing * scale_in_medians_);
   return true;
 }
@@ -193,7 +205,7 @@ bool IcpIteration::descend(const Pose& guess, IcpResult& result) {
   scale_in_medians_ = widest_scale;
   // Point-to-point is held by the points themselves: fewer would hold it elsewhere.
   const bool coarse = !creeps() && source_.size() / coarse_stride >= least_sample;
-  sample_every(coarse ? coarse_stride : 1);
+  sample_every(coarse ? std::max(coarse_stride, source_.size() / most_sample) : 1);
   bool moving = true;
   while (moving && result.iterations < options_.max_iterations) moving = iterate(result);
   if (stride_ > 1) sample_every(1);

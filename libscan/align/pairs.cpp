@@ -20,7 +20,7 @@ constexpr double most_scales = 3;
 // its noise: the root of the 1e-3 of Segal et al., section IV.
 constexpr double usual_thickness = 0.0316;
 // Pairs that tell how much of a motion shows: each within some half, their mean within 2 %.
-constexpr std::size_t most_probed = 512;
+constexpr std::size_t most_probed = 512, probe_chunk = 128;
 
 // Median over the cloud of the standard deviation along the normal; 0: not told.
 double noise_across_m(const PreparedCloud& cloud) {
@@ -173,26 +173,41 @@ Eigen::Matrix3d PairFinder::metric(const Pose& pose, const Couple& couple) const
 
 double PairFinder::shown_share(const Pose& pose, std::span<const Couple> couples,
                                const WelschLoss& loss) const {
+  struct Pulled {
+    double shown_m = 0, whole_m = 0;
+    Pulled& operator+=(const Pulled& other) {
+      shown_m += other.shown_m, whole_m += other.whole_m;
+      return *this;
+    }
+  };
   // A loss without a scale is that of squares, which any step tells.
   const double step_m = 0.3 * std::min(loss.scale_m, target_.radius_m);
   const auto pull_m = [&](double residual_m) { return loss.weight(residual_m) * residual_m; };
-  double shown_m = 0, whole_m = 0;
+  const std::size_t stride = std::max<std::size_t>(1, couples.size() / most_probed);
   const auto probe = [&](const auto& search) {
-    const std::size_t stride = std::max<std::size_t>(1, couples.size() / most_probed);
-    for (std::size_t k = 0; k < couples.size(); k += stride) {
-      const PointPair points = pair(pose, couples[k]);
-      const double across_m = points.normal.dot(points.moved - points.target);
-      for (const double off_m : {-step_m, step_m}) {
-        const Eigen::Vector3d there = points.moved + off_m * points.normal;
-        const auto found = search.nearest(there, unlimited_m, couples[k].target);
-        const double sign = off_m < 0 ? -1 : 1;
-        shown_m += sign * pull_m(points.normal.dot(there - target_.points[found->index]));
-        whole_m += sign * pull_m(across_m + off_m);
+    return [&](std::size_t begin, std::size_t end) {
+      Pulled part;
+      for (std::size_t k = begin; k < end; ++k) {
+        const Couple& couple = couples[k * stride];
+        const PointPair points = pair(pose, couple);
+        const double across_m = points.normal.dot(points.moved - points.target);
+        for (const double off_m : {-step_m, step_m}) {
+          const Eigen::Vector3d there = points.moved + off_m * points.normal;
+          const auto found = search.nearest(there, unlimited_m, couple.target);
+          const double sign = off_m < 0 ? -1 : 1;
+          part.shown_m += sign * pull_m(points.normal.dot(there - target_.points[found->index]));
+          part.whole_m += sign * pull_m(across_m + off_m);
+        }
       }
-    }
+      return part;
+    };
   };
-  std::visit(probe, target_.search);
-  return whole_m > 0 ? std::clamp(shown_m / whole_m, 0.1, 1.0) : 1;
+  const std::size_t probed = (couples.size() + stride - 1) / stride;
+  const auto sum_by = [&](const auto& search) {
+    return ordered_sum(probed, probe_chunk, Pulled{}, probe(search));
+  };
+  const Pulled sum = std::visit(sum_by, target_.search);
+  return sum.whole_m > 0 ? std::clamp(sum.shown_m / sum.whole_m, 0.1, 1.0) : 1;
 }
 
 double PairFinder::median_residual_m(std::span<const Match> matches) const {

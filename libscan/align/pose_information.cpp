@@ -7,9 +7,12 @@
 
 #include "libscan/align/pose_step.h"
 #include "libscan/align/shared_noise.h"
+#include "libscan/core/parallel.h"
 
 namespace scan {
 namespace {
+
+constexpr std::size_t chunk = 1024;
 
 Vector6 row_of(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal) {
   Vector6 row;
@@ -69,37 +72,63 @@ TwistBasis rest_of(const TwistBasis& weak) {
   return q.rightCols(6 - weak.cols());
 }
 
+// What the pairs pull with, where, and what they hold together.
+struct Pulls {
+  std::vector<Vector6> gradients;
+  std::vector<Eigen::Vector3d> at;
+  Matrix6 curvature = Matrix6::Zero(), scatter = Matrix6::Zero();
+};
+
+Pulls pulls_of(const PairFinder& finder, const Pose& pose, std::span<const Couple> couples,
+               const WelschLoss& loss, const DataFrame& frame) {
+  struct Sum {
+    Matrix6 curvature = Matrix6::Zero(), scatter = Matrix6::Zero();
+    Sum& operator+=(const Sum& other) {
+      curvature += other.curvature, scatter += other.scatter;
+      return *this;
+    }
+  };
+  Pulls pulls;
+  pulls.gradients.resize(couples.size());
+  pulls.at.resize(couples.size());
+  const Sum sum =
+      ordered_sum(couples.size(), chunk, Sum{}, [&](std::size_t begin, std::size_t end) {
+        Sum part;
+        for (std::size_t i = begin; i < end; ++i) {
+          const Pull pull = pull_of(finder, pose, couples[i], loss, frame);
+          pulls.gradients[i] = pull.gradient;
+          pulls.at[i] = finder.target().points[couples[i].target];
+          part.curvature += pull.curvature;
+          part.scatter.noalias() += pull.gradient * pull.gradient.transpose();
+        }
+        return part;
+      });
+  pulls.curvature = sum.curvature;
+  pulls.scatter = sum.scatter;
+  return pulls;
+}
+
 }  // namespace
 
 Matrix6 pose_information(const PairFinder& finder, const Pose& pose,
                          std::span<const Couple> couples, const WelschLoss& loss,
                          const DataFrame& frame, const TwistBasis& weak) {
   if (weak.cols() == 6) return Matrix6::Zero();
-  std::vector<Vector6> pulls;
-  std::vector<Eigen::Vector3d> at;
-  Matrix6 curvature = Matrix6::Zero(), scatter = Matrix6::Zero();
-  for (const Couple& couple : couples) {
-    const Pull pull = pull_of(finder, pose, couple, loss, frame);
-    pulls.push_back(pull.gradient);
-    at.push_back(finder.target().points[couple.target]);
-    curvature += pull.curvature;
-    scatter += pull.gradient * pull.gradient.transpose();
-  }
+  Pulls pulls = pulls_of(finder, pose, couples, loss, frame);
   // Residuals cannot be known better than the coordinates are rounded.
   const double rounding =
       1e-15 * (finder.target().origin.norm() + finder.target().radius_m) / frame.size_m;
-  scatter += std::max(rounding * rounding, 1e-300) * curvature.trace() * Matrix6::Identity();
-  curvature *= finder.shown_share(pose, couples, loss);
+  pulls.scatter +=
+      std::max(rounding * rounding, 1e-300) * pulls.curvature.trace() * Matrix6::Identity();
+  pulls.curvature *= finder.shown_share(pose, couples, loss);
   const TwistBasis rest = rest_of(weak);
-  const Eigen::MatrixXd b = rest.transpose() * curvature * rest;
-  const Eigen::LLT<Eigen::MatrixXd> held(b), spread(rest.transpose() * scatter * rest);
+  const Eigen::MatrixXd b = rest.transpose() * pulls.curvature * rest;
+  const Eigen::LLT<Eigen::MatrixXd> held(b), spread(rest.transpose() * pulls.scatter * rest);
   if (held.info() != Eigen::Success) return Matrix6::Zero();
-  for (Vector6& pull : pulls) {
-    const Eigen::VectorXd white = spread.matrixL().solve(rest.transpose() * pull);
-    pull.setZero();
-    pull.head(rest.cols()) = white;
-  }
-  const double sharing = noise_sharing(pulls, at, static_cast<int>(rest.cols()));
+  Matrix6 whitening = Matrix6::Zero();
+  whitening.topRows(rest.cols()) = spread.matrixL().solve(Eigen::MatrixXd(rest.transpose()));
+  for (Vector6& gradient : pulls.gradients) gradient = (whitening * gradient).eval();
+  const double sharing = noise_sharing(pulls.gradients, pulls.at, static_cast<int>(rest.cols()));
   Matrix6 information = rest * (b * spread.solve(b)) * rest.transpose() / sharing;
   information.rightCols<3>() /= frame.size_m;
   information.bottomRows<3>() /= frame.size_m;

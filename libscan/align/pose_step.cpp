@@ -20,8 +20,9 @@ template <class Residual>
 void add(NormalEquations& sum, const PointPair& pair, double weight, const DataFrame& frame) {
   auto jacobian = Residual::jacobian(pair, frame.centre).eval();
   jacobian.template leftCols<3>() /= frame.size_m;
-  sum.a.noalias() += weight * (jacobian.transpose() * jacobian);
-  sum.b.noalias() -= (weight / frame.size_m) * jacobian.transpose() * Residual::value(pair);
+  const auto weighted = (weight * jacobian.transpose()).eval();
+  sum.a.noalias() += weighted * jacobian;
+  sum.b.noalias() -= weighted * Residual::value(pair) / frame.size_m;
 }
 
 void add_metric(NormalEquations& sum, const PointPair& pair, const Eigen::Matrix3d& metric,
@@ -49,7 +50,9 @@ Step rigid_step(const PairFinder& finder, const Pose& pose, std::span<const Coup
     squares_m2 += weights[i] * (best * moved[i] - moved[i]).squaredNorm();
   Vector6 twist = log(best);
   twist.tail<3>() /= frame.size_m;
-  return {complement_projector(withheld) * twist, std::sqrt(squares_m2)};
+  return {.twist = complement_projector(withheld) * twist,
+          .change_m = std::sqrt(squares_m2),
+          .sigma_m = rms_m(couples, loss)};
 }
 
 }  // namespace
@@ -100,6 +103,9 @@ NormalEquations normal_equations(const PairFinder& finder, const Pose& pose,
                        for (const Couple& couple : couples.subspan(begin, end - begin)) {
                          const PointPair pair = finder.pair(pose, couple);
                          const double weight = loss.weight(couple.residual_m);
+                         const double square_m2 = couple.residual_m * couple.residual_m;
+                         sum.weights += weight;
+                         sum.squares_m2 += weight * square_m2;
                          if (finder.method() == IcpMethod::point_to_point)
                            add<PointToPoint>(sum, pair, weight, frame);
                          else if (finder.method() == IcpMethod::symmetric)
@@ -119,7 +125,10 @@ Step best_step(const PairFinder& finder, const Pose& pose, std::span<const Coupl
     return rigid_step(finder, pose, couples, loss, frame, withheld);
   const NormalEquations sums = normal_equations(finder, pose, couples, loss, frame);
   const Vector6 twist = solve_withholding(sums.a, sums.b, withheld);
-  return {twist, frame.size_m * std::sqrt(std::max(0.0, twist.dot(sums.a * twist)))};
+  const Matrix6 squares_m2 = frame.size_m * frame.size_m * sums.a;
+  const double variance_m2 = sums.squares_m2 / sums.weights;
+  return {twist, std::sqrt(std::max(0.0, twist.dot(squares_m2 * twist))), squares_m2,
+          std::sqrt(variance_m2), 1 - variance_m2 / (loss.scale_m * loss.scale_m)};
 }
 
 Pose moved(const Pose& pose, Vector6 twist, const DataFrame& frame) {

@@ -17,13 +17,17 @@ DataFrame frame_of(const PairFinder& finder, const Pose& pose, std::span<const C
 // Root mean square of the residuals, as the loss weighs them, metres.
 double rms_m(std::span<const Couple> couples, const WelschLoss& loss);
 
-// Sums over the pairs of w J^T J and -w J^T r, r in units of the frame's size.
+// Sums over the pairs of w J^T J and -w J^T r, r in units of the frame's size, and of w and
+// w r^2.
 struct NormalEquations {
   Matrix6 a = Matrix6::Zero();
   Vector6 b = Vector6::Zero();
+  double weights = 0, squares_m2 = 0;
   NormalEquations& operator+=(const NormalEquations& other) {
     a += other.a;
     b += other.b;
+    weights += other.weights;
+    squares_m2 += other.squares_m2;
     return *this;
   }
 };
@@ -34,6 +38,10 @@ NormalEquations normal_equations(const PairFinder& finder, const Pose& pose,
 struct Step {
   Vector6 twist = Vector6::Zero();
   double change_m = 0;  // root of the weighted sum of squared changes of the residuals
+  Matrix6 squares_m2 = Matrix6::Zero();  // that sum of any twist t: t^T squares_m2 t
+  double sigma_m = 0;                    // rms_m of the pairs
+  // Of the loss over that of the weighted squares, of point-to-point 1: rho'' / w = 1 - r^2 / s^2.
+  double bend = 1;
 };
 
 // The step that lowers the weighted squares of the residuals most, with no part along `withheld`:

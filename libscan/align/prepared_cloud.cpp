@@ -7,6 +7,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/median.h"
+#include "libscan/core/parallel.h"
 #include "libscan/search/batch.h"
 #include "libscan/search/voxel_grid.h"
 
@@ -98,6 +99,19 @@ PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options) {
   prepared.spacing_m = spacing_m(prepared.points, prepared.search);
   choose_normals(prepared);
   return prepared;
+}
+
+std::pair<PreparedCloud, PreparedCloud> prepare_pair(const PointCloud& source,
+                                                     const PointCloud& target,
+                                                     const PrepareOptions& options) {
+  std::pair<PreparedCloud, PreparedCloud> pair;
+  parallel_for(
+      2,
+      [&](std::size_t i) {
+        (i == 0 ? pair.first : pair.second) = prepare(i == 0 ? source : target, options);
+      },
+      1);
+  return pair;
 }
 
 Pose with_proper_rotation(const Pose& pose) {

@@ -3,6 +3,7 @@
 // A scan made ready to be aligned, once for many pairs.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "libscan/align/local_surface.h"
@@ -42,6 +43,11 @@ struct PreparedCloud {
 };
 
 PreparedCloud prepare(const PointCloud& cloud, const PrepareOptions& options = {});
+
+// Both at once.
+std::pair<PreparedCloud, PreparedCloud> prepare_pair(const PointCloud& source,
+                                                     const PointCloud& target,
+                                                     const PrepareOptions& options = {});
 
 // The pose with the nearest rotation in place of its matrix; a rotation to rounding keeps its bits.
 Pose with_proper_rotation(const Pose& pose);

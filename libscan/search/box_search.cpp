@@ -15,7 +15,7 @@ namespace {
 // Up to `few`, the k nearest are sorted in the kernel. It keeps `spare` more at least: as long as
 // not all of them rival the k-th, none that does was dropped. On lattices more do; then `most` are
 // kept.
-constexpr std::size_t few = 60, spare = 4, insert_width = 8, most = few + spare;
+constexpr std::size_t few = 68, spare = 4, insert_width = 8, most = few + spare;
 // Where the k-th of the point before was, how far to look for that of the next: its neighbours
 // reach as far within a fifth nearly always, and half as many more would not fit.
 constexpr double next_reach = 1.2;

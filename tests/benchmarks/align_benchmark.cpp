@@ -49,8 +49,7 @@ Outcome by_libscan(const PairCase& pair, IcpMethod method) {
   Outcome outcome;
   const PairWatch watch;
   const PrepareOptions options{.thin_m = pair.thin_m};
-  const PreparedCloud source = prepare(pair.source, options);
-  const PreparedCloud target = prepare(pair.target, options);
+  const auto [source, target] = prepare_pair(pair.source, pair.target, options);
   outcome.prepare_s = watch.seconds();
   const IcpResult result = icp(source, target, pair.guess, {.method = method});
   outcome.align_s = watch.seconds() - outcome.prepare_s;
