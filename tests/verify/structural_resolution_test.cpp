@@ -45,19 +45,18 @@ double whole(double) {
   return 1;
 }
 
-// A reading that is the mean over a width w keeps sin(pi w / P) / (pi w / P) of the amplitude, half
-// at P = w / 0.6034. With t = ln P and v = pi w / P the transfer S = sin v / v has S' = S - cos v
-// and S'' = S - cos v - v sin v: at the limit, v = 1.8955, 0.819 and -0.977, and at most 1.12 in
-// size over a step about it (v up to 2.68). The chord over h = ln(2) / 2 is off by at most
-// h^2 / 8 1.12 = 0.0168 in S, and the chord falls by at least 0.63 per unit of t there, so t by
-// 0.027. The least of all periods, 0.044 m, spans 8 points.
+// A reading that is the mean over a width w keeps sin(v) / v of the amplitude, v = pi w / P: half
+// at P = w / 0.6034. Per unit of ln P this S has the slope S - cos v and the second derivative S -
+// cos v - v sin v, at most 0.99 in size where a step h = ln(2) / 2 may lie about the limit (v =
+// 1.34 to 2.68). So the chord is off by at most h^2 / 8 0.99 = 0.0149 and falls by at least 0.653
+// (v = 1.34 to 1.90) per unit of ln P, which makes 0.023 of P.
 TEST(StructuralResolution, OfAWindowIsThatOfItsSinc) {
   for (const double width_m : {0.04, 0.047, 0.055}) {
     const auto sinc = [&](double period_m) {
       const double v = std::numbers::pi * width_m / period_m;
       return std::sin(v) / v;
     };
-    EXPECT_NEAR(resolution_m(falling(0.25, 6, 0.0055, sinc)) * 0.6034 / width_m, 1, 0.027);
+    EXPECT_NEAR(resolution_m(falling(0.25, 6, 0.0055, sinc)) * 0.6034 / width_m, 1, 0.023);
   }
 }
 
@@ -81,13 +80,13 @@ TEST(StructuralResolution, OfAnIdealGridIsTwoPoints) {
 TEST(WaveResponse, IsWithoutBiasInNoise) {
   RandomStream random(1, 0, 0);
   for (const double share : {0.0, 1.0}) {
-    double mean = 0, sigma_of_mean = 0;
+    const double sigma_of_mean = 5 * std::sqrt(2 / 2500.0 / 50);  // 50 x 50 points on the face
+    double mean = 0;
     for (int repeat = 0; repeat < 50; ++repeat) {
       WavePlate plate = plate_of(0.1, 0.02, [&](double) { return share; });
       const double sigma_m = 5 * plate.amplitude_m;
       for (Eigen::Vector3d& x : plate.points) x.z() += sigma_m * random.normal();
       mean += wave_response(plate).transfer / 50;
-      sigma_of_mean = 5 * std::sqrt(2 / 2500.0 / 50);  // of the 50 x 50 points on the face
     }
     EXPECT_NEAR(mean, share, 5 * sigma_of_mean);
   }
@@ -108,15 +107,17 @@ TEST(WaveResponse, IsNegativeForTurnedPhase) {
   EXPECT_FALSE(is_resolved(response));
 }
 
-// Rows 10 mm apart of points 1 mm apart are no better than their rows.
+// Rows 20 mm apart of points 2 mm apart are no better than their rows: the share of the fields that
+// hold a point is r = P / 2 p, and the chord meets 0.9 between 0.888 (r = 1) and 0.957 (r = 1.18),
+// by one row of 30 fields more or less, 1/30 at the slope of 1 in ln P.
 TEST(StructuralResolution, OfRowsIsThatAcrossThem) {
   std::vector<WavePlate> plates = falling(0.25, 9, 0.002, whole);
   for (WavePlate& plate : plates)
     std::erase_if(plate.points, [](const Eigen::Vector3d& x) {
-      return std::lround((x.y() + 1) / 0.002) % 10 != 0;
+      return std::lround((x.y() + 0.52) / 0.002) % 10 != 0;
     });
-  // One direction alone: the share is P / (2 p), 0.9 at 1.8 p.
-  EXPECT_NEAR(resolution_m(plates), 1.8 * 0.02, 0.1 * 1.8 * 0.02);
+  EXPECT_GT(resolution_m(plates), 2 * 0.02 * (0.888 - 0.033));
+  EXPECT_LT(resolution_m(plates), 2 * 0.02 * (0.957 + 0.033));
 }
 
 TEST(StructuralResolution, IsTheWorstDirections) {
