@@ -60,6 +60,23 @@ Object slab(const std::string& name, const Pose& world_from_face, double width_m
               BoxShape{{width_m, height_m, thickness_m}, 0});
 }
 
+// A strip of two triangles per facet along x, the height constant across.
+Mesh waves(double edge_m, double period_m) {
+  const auto facets = static_cast<std::uint32_t>(std::ceil(32 * edge_m / period_m));
+  Mesh mesh;
+  for (std::uint32_t i = 0; i <= facets; ++i) {
+    const double x_m = std::min(i * period_m / 32 - edge_m / 2, edge_m / 2);
+    const double height_m =
+        wave_amplitude_m(period_m) * std::cos(2 * std::numbers::pi * x_m / period_m);
+    for (const double y_m : {-edge_m / 2, edge_m / 2})
+      mesh.vertices.push_back({x_m, y_m, height_m});
+    if (i == facets) break;
+    mesh.triangles.push_back({2 * i, 2 * i + 2, 2 * i + 3});
+    mesh.triangles.push_back({2 * i, 2 * i + 3, 2 * i + 1});
+  }
+  return mesh;
+}
+
 }  // namespace
 
 Artefacts with_sizes(Artefacts artefacts) {
@@ -156,6 +173,20 @@ std::vector<PlacedObjects> step_places(const Artefacts& sized, const Pose& world
          slab("upper", around * placed({edge_m / 4, 0, sized.step_m}), edge_m / 2, edge_m)});
   }
   return places;
+}
+
+double wave_amplitude_m(double period_m) {
+  return 0.05 * period_m;
+}
+
+PlacedObjects wave_plate(const Artefacts& sized, const Pose& world_from_scanner, double period_m,
+                         WaveAxis axis) {
+  const Pose from_volume = world_from_volume(sized, world_from_scanner);
+  const double angle = axis == WaveAxis::x ? 0 : 90 * deg;
+  return {{.name = "wave plate",
+           .world_from_object =
+               from_volume * placed({0, 0, 0}, turned(angle, Eigen::Vector3d::UnitZ())),
+           .geometry = waves(sized.plate_m, period_m)}};
 }
 
 }  // namespace scan::synth

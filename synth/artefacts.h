@@ -3,7 +3,8 @@
 // Calibrated bodies at their places in a scanner's measuring volume.
 //
 // Sizes and places follow VDI/VDE 2634 part 2 (probing, sphere spacing, flatness) and common house
-// tests (cylinder, step); libscan/verify/artefacts.h has the figures.
+// tests (cylinder, step, waves); libscan/verify/artefacts.h and structural_resolution.h have the
+// figures.
 #pragma once
 
 #include <vector>
@@ -45,5 +46,14 @@ std::vector<PlacedObjects> plate_places(const Artefacts& sized, const Pose& worl
 std::vector<PlacedObjects> cylinder_places(const Artefacts& sized, const Pose& world_from_scanner);
 // The lower and the upper of two parallel faces side by side, turned four ways about the sight.
 std::vector<PlacedObjects> step_places(const Artefacts& sized, const Pose& world_from_scanner);
+
+// Waves of one period on a plate across the sight: z = amplitude cos(2 pi x / period) of the
+// object, whose x axis is the scanner's, or its y axis if turned; a twentieth of the period in
+// amplitude, so that no slope exceeds 17.4 degrees. As a mesh of 32 facets a period, which keep
+// (sin(pi / 32) / (pi / 32))^2 = 0.997 of the amplitude.
+enum class WaveAxis { x, y };
+double wave_amplitude_m(double period_m);
+PlacedObjects wave_plate(const Artefacts& sized, const Pose& world_from_scanner, double period_m,
+                         WaveAxis axis);
 
 }  // namespace scan::synth

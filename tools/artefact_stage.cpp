@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// The bodies' places simulated one by one; figures of what was measured and of what was to expect.
+// Each test's places on the bench; figures of what was measured and of what was to expect.
 #include "tools/artefact_stage.h"
 
 #include <algorithm>
@@ -13,125 +13,14 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/median.h"
-#include "libscan/core/random.h"
 #include "libscan/verify/artefacts.h"
-#include "synth/ray_caster.h"
+#include "libscan/verify/structural_resolution.h"
+#include "tools/artefact_bench.h"
 
 namespace scan {
 namespace {
 
-constexpr std::size_t draws = 7;
-constexpr std::size_t least_points = 20;
 constexpr std::size_t most_views = 3, merged_places = 3, repetitions = 10;
-
-// The points of one body at one place, as measured and as drawn; scanner frame.
-struct BodyPoints {
-  Points measured;
-  std::array<Points, draws> drawn;
-};
-
-// Whether a true point of a body counts, in the body's frame.
-using Counts = bool (*)(const synth::Object& body, const Eigen::Vector3d& at,
-                        const Eigen::Vector3d& normal);
-
-bool counts_anywhere(const synth::Object&, const Eigen::Vector3d&, const Eigen::Vector3d&) {
-  return true;
-}
-bool counts_on_mantle(const synth::Object&, const Eigen::Vector3d&, const Eigen::Vector3d& normal) {
-  return std::abs(normal.z()) < 0.5;
-}
-bool counts_on_inner_face(const synth::Object& body, const Eigen::Vector3d& at,
-                          const Eigen::Vector3d& normal) {
-  const Eigen::Vector3d half = 0.45 * std::get<BoxShape>(std::get<Shape>(body.geometry)).size_m;
-  return normal.z() > 0.9 && std::abs(at.x()) < half.x() && std::abs(at.y()) < half.y();
-}
-
-// One place after another: what the scanner sees of its bodies.
-class Bench {
- public:
-  Bench(const Recipe& recipe, Console& console)
-      : recipe_(recipe),
-        console_(console),
-        viewpoints_(true_poses(recipe.viewpoints)),
-        world_from_scanner_(viewpoints_.front()) {}
-
-  const Pose& world_from_scanner() const { return world_from_scanner_; }
-  const std::vector<Pose>& viewpoints() const { return viewpoints_; }
-
-  // Per place, per body; from the first viewpoint, or from several and put together by their true
-  // poses. Each scan has noise of its own.
-  std::vector<std::vector<BodyPoints>> scanned(const std::string& test,
-                                               const std::vector<synth::PlacedObjects>& places,
-                                               Counts counts, std::size_t views = 1) {
-    std::vector<std::vector<BodyPoints>> all;
-    synth::Scene scene = recipe_.scene.scene;
-    scene.objects = places.front();
-    const std::array poses = {world_from_scanner_};
-    const synth::EffectSet effects =
-        effects_of(plan_effects(recipe_.scanner, scene, poses, recipe_.effects));
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      console_.progress()(test, static_cast<double>(i) / static_cast<double>(places.size()));
-      scene.objects = places[i];
-      all.emplace_back(places[i].size());
-      for (std::size_t view = 0; view < views; ++view)
-        scan_place(scene, effects, counts, viewpoints_[view * viewpoints_.size() / views],
-                   all.back());
-      for (std::size_t k = 0; k < places[i].size(); ++k)
-        if (all.back()[k].measured.size() < least_points)
-          throw Error(Trouble::computation,
-                      "artefacts: " + places[i][k].name + " at place " + std::to_string(i + 1) +
-                          " gave " + std::to_string(all.back()[k].measured.size()) +
-                          " points, needs " + std::to_string(least_points) +
-                          "; does the scanner see the whole measuring volume?");
-    }
-    console_.progress()(test, 1);
-    return all;
-  }
-
- private:
-  void scan_place(const synth::Scene& scene, const synth::EffectSet& effects, Counts counts,
-                  const Pose& world_from_view, std::vector<BodyPoints>& bodies) {
-    const synth::RenderAddress address{.seed = recipe_.seed, .scan = place_++};
-    const synth::RayCaster caster(simplified(scene, effects));
-    const auto rendering = render(recipe_.scanner, caster, world_from_view, address, effects);
-    const Scan scan = acquire(rendering.frames, recipe_.acquire);
-    const auto rays = true_rays(recipe_.scanner, caster, world_from_view);
-    const Pose first_from_view = world_from_scanner_.inverse() * world_from_view;
-    for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
-      const RayTruth& truth = rays[scan.ray[i]];
-      if (truth.object < 0 || !is_counted(scene, world_from_view, truth, counts)) continue;
-      add(bodies[static_cast<std::size_t>(truth.object)], first_from_view, scan, i, truth, address);
-    }
-  }
-
-  static bool is_counted(const synth::Scene& scene, const Pose& world_from_view,
-                         const RayTruth& truth, Counts counts) {
-    const Eigen::Vector3d along = truth.point_in_scanner.normalized();
-    if (!(-along.dot(truth.normal_in_scanner) > 0.5)) return false;  // 60 degrees
-    const synth::Object& body = scene.objects[static_cast<std::size_t>(truth.object)];
-    const Pose body_from_scanner = body.world_from_object.inverse() * world_from_view;
-    return counts(body, body_from_scanner * truth.point_in_scanner,
-                  body_from_scanner.linear() * truth.normal_in_scanner);
-  }
-
-  static void add(BodyPoints& body, const Pose& first_from_view, const Scan& scan, std::size_t i,
-                  const RayTruth& truth, const synth::RenderAddress& address) {
-    body.measured.push_back(first_from_view * scan.cloud.points[i]);
-    if (scan.cloud.sigma_m.empty()) return;
-    const Eigen::Vector3d along = truth.point_in_scanner.normalized();
-    RandomStream random(address.seed + 1, address.scan, scan.ray[i]);
-    for (Points& drawn : body.drawn) {
-      const double error_m = scan.cloud.sigma_m[i] * random.normal();
-      drawn.push_back(first_from_view * (truth.point_in_scanner + error_m * along));
-    }
-  }
-
-  const Recipe& recipe_;
-  Console& console_;
-  std::vector<Pose> viewpoints_;
-  Pose world_from_scanner_;
-  std::uint32_t place_ = 0;
-};
 
 using Test = std::vector<std::vector<BodyPoints>>;  // per place, per body
 using Select = std::function<const Points&(const BodyPoints&)>;
@@ -145,7 +34,7 @@ void add_lines(std::vector<SheetLine>& sheet, const Test& test, const Figures& f
     sheet.push_back({std::move(measurement), std::numeric_limits<double>::quiet_NaN()});
   if (test.front().front().drawn.front().empty()) return;
   std::vector<std::vector<double>> drawn(sheet.size() - first);
-  for (std::size_t draw = 0; draw < draws; ++draw) {
+  for (std::size_t draw = 0; draw < artefact_draws; ++draw) {
     const auto of_draw =
         figures([&](const BodyPoints& b) -> const Points& { return b.drawn[draw]; });
     for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i].push_back(of_draw[i].value);
@@ -275,6 +164,60 @@ void test_cylinders(std::vector<SheetLine>& sheet, Bench& bench, const synth::Ar
   });
 }
 
+// Waves along one axis of the scanner, their periods falling by the root of two from a quarter of
+// the plate, until neither the measured points nor the drawn ones resolve them; at most down to a
+// thousandth of the plate, where 32 facets a period still make a small mesh.
+struct WaveSeries {
+  std::vector<BodyPoints> bodies;
+  std::vector<double> periods_m;
+  Pose scanner_from_plate;
+};
+
+WavePlate wave_plate(const WaveSeries& series, std::size_t i, const synth::Artefacts& sized,
+                     const Select& select) {
+  WavePlate plate{.edge_m = 0.9 * sized.plate_m,
+                  .period_m = series.periods_m[i],
+                  .amplitude_m = synth::wave_amplitude_m(series.periods_m[i])};
+  const Pose plate_from_scanner = series.scanner_from_plate.inverse();
+  for (const Eigen::Vector3d& x : select(series.bodies[i]))
+    plate.points.push_back(plate_from_scanner * x);
+  return plate;
+}
+
+bool last_is_resolved(const WaveSeries& series, const synth::Artefacts& sized) {
+  const auto resolves = [&](const Select& select) {
+    return is_resolved(wave_response(wave_plate(series, series.bodies.size() - 1, sized, select)));
+  };
+  return resolves([](const BodyPoints& b) -> const Points& { return b.measured; }) ||
+         resolves([](const BodyPoints& b) -> const Points& { return b.drawn.front(); });
+}
+
+WaveSeries wave_series(Bench& bench, const synth::Artefacts& sized, synth::WaveAxis axis) {
+  WaveSeries series;
+  const char* test = axis == synth::WaveAxis::x ? "waves along x" : "waves along y";
+  for (int i = 0; i < 17; ++i) {
+    const double period_m = sized.plate_m / 4 * std::pow(2, -i / 2.0);
+    const auto plate = wave_plate(sized, bench.world_from_scanner(), period_m, axis);
+    series.scanner_from_plate = in_scanner(bench, plate.front());
+    series.periods_m.push_back(period_m);
+    series.bodies.push_back(bench.scanned(test, {plate}, counts_anywhere)[0][0]);
+    if (!last_is_resolved(series, sized)) break;
+  }
+  return series;
+}
+
+void test_waves(std::vector<SheetLine>& sheet, Bench& bench, const synth::Artefacts& sized) {
+  const std::array series = {wave_series(bench, sized, synth::WaveAxis::x),
+                             wave_series(bench, sized, synth::WaveAxis::y)};
+  add_lines(sheet, {series[0].bodies}, [&](const Select& select) {
+    std::array<std::vector<WavePlate>, 2> plates;
+    for (std::size_t k = 0; k < series.size(); ++k)
+      for (std::size_t i = 0; i < series[k].bodies.size(); ++i)
+        plates[k].push_back(wave_plate(series[k], i, sized, select));
+    return std::vector{structural_resolution(plates)};
+  });
+}
+
 }  // namespace
 
 std::vector<SheetLine> artefact_sheet(const Recipe& recipe, Console& console) {
@@ -287,6 +230,7 @@ std::vector<SheetLine> artefact_sheet(const Recipe& recipe, Console& console) {
   test_balls(sheet, bench, sized);
   test_faces(sheet, bench, sized);
   test_cylinders(sheet, bench, sized);
+  test_waves(sheet, bench, sized);
   test_merged_views(sheet, bench, sized);
   test_repeatability(sheet, bench, sized);
   return sheet;

@@ -13,7 +13,9 @@ namespace scan {
 
 // `predicted`: the same figure of points drawn around the true ones with the sigma that the scan
 // itself states, independent and without bias; the median of seven draws. A measured figure far
-// above it shows what that sigma leaves out. NaN where the scan states none.
+// above it shows what that sigma leaves out. NaN where the scan states none. Drawn points lie where
+// the scan's own do, so that of the structural resolution is the limit of its sampling; what a
+// footprint or a matching window blurs stands above it.
 struct SheetLine {
   Measurement measured;
   double predicted = 0;
@@ -23,7 +25,8 @@ struct SheetLine {
 // scanner, effects, lights and medium, and the bodies of its first material in the place of its
 // objects. Points count where the true surface is turned away from the ray by less than 60 degrees
 // and, on plates and steps, lies in the inner 0.9 of the face. Throws scan::Error (computation) for
-// a place without enough points, (input) for a recipe without artefacts.
+// a place without enough points or waves too fine from the first, (input) for a recipe without
+// artefacts.
 std::vector<SheetLine> artefact_sheet(const Recipe& recipe, Console& console);
 
 }  // namespace scan

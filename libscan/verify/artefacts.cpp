@@ -23,25 +23,6 @@ double farther_from_zero(double a, double b) {
   return std::abs(b) > std::abs(a) ? b : a;
 }
 
-// Indices of the residuals without the 0.3 % that are farthest from their median.
-std::vector<std::size_t> kept(std::span<const double> residuals_m) {
-  std::vector<std::size_t> order(residuals_m.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto by_value = [&](std::size_t a, std::size_t b) {
-    return residuals_m[a] < residuals_m[b];
-  };
-  std::sort(order.begin(), order.end(), by_value);
-  const double middle = residuals_m[order[order.size() / 2]];
-  auto drop =
-      static_cast<std::size_t>(std::floor(left_out * static_cast<double>(residuals_m.size())));
-  auto low = order.begin(), high = order.end();
-  for (; drop > 0; --drop) {
-    const bool low_is_farther = middle - residuals_m[*low] > residuals_m[*(high - 1)] - middle;
-    low_is_farther ? ++low : --high;
-  }
-  return {low, high};
-}
-
 template <class Residual>
 std::vector<double> each(const Points& points, Residual&& residual) {
   std::vector<double> residuals_m;
@@ -65,16 +46,13 @@ std::vector<double> residuals_of(const Points& points, const CylinderFit& fit) {
   });
 }
 
-Points without_outliers(const Points& points, std::span<const double> residuals_m) {
-  Points inner;
-  for (const std::size_t i : kept(residuals_m)) inner.push_back(points[i]);
-  return inner;
-}
-
 // A fit repeated without the points that its first residuals leave out.
 template <class Fit>
 auto refitted(const Points& points, Fit&& fit) {
-  return fit(without_outliers(points, residuals_of(points, fit(points))));
+  Points inner;
+  for (const std::size_t i : without_outliers(residuals_of(points, fit(points))))
+    inner.push_back(points[i]);
+  return fit(inner);
 }
 
 // The largest form over places, and the points of all of them.
@@ -100,10 +78,28 @@ Measurement figure(const char* name, double value, const char* unit, std::string
 
 }  // namespace
 
+std::vector<std::size_t> without_outliers(std::span<const double> residuals_m) {
+  std::vector<std::size_t> order(residuals_m.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto by_value = [&](std::size_t a, std::size_t b) {
+    return residuals_m[a] < residuals_m[b];
+  };
+  std::sort(order.begin(), order.end(), by_value);
+  const double middle = residuals_m[order[order.size() / 2]];
+  auto drop =
+      static_cast<std::size_t>(std::floor(left_out * static_cast<double>(residuals_m.size())));
+  auto low = order.begin(), high = order.end();
+  for (; drop > 0; --drop) {
+    const bool low_is_farther = middle - residuals_m[*low] > residuals_m[*(high - 1)] - middle;
+    low_is_farther ? ++low : --high;
+  }
+  return {low, high};
+}
+
 Form form_of(std::span<const double> residuals_m) {
   if (residuals_m.empty()) throw Error(Trouble::input, "form: no points");
   std::vector<double> inner;
-  for (const std::size_t i : kept(residuals_m)) inner.push_back(residuals_m[i]);
+  for (const std::size_t i : without_outliers(residuals_m)) inner.push_back(residuals_m[i]);
   std::vector<double> sorted(residuals_m.begin(), residuals_m.end());
   std::sort(sorted.begin(), sorted.end());
   const auto n = sorted.size();

@@ -25,6 +25,9 @@ struct Form {
 // Of the residuals of a fit. The points left out are those farthest from the middle of the list.
 Form form_of(std::span<const double> residuals_m);
 
+// Indices of the residuals without the 0.3 % that are farthest from their median.
+std::vector<std::size_t> without_outliers(std::span<const double> residuals_m);
+
 // One ball at several places. probing_form and probing_form_95 (largest over the places), and
 // probing_size: fitted less true diameter, the one farthest from 0.
 std::vector<Measurement> probing_errors(std::span<const Points> balls, double true_diameter_m);

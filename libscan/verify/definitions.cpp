@@ -67,6 +67,7 @@ constexpr Line figures[] = {
     {"cylindricity_95", "narrowest width that holds 95 % of the residuals to the Gauss cylinder"},
     {"cylinder_axis_error", "angle between fitted and true axis"},
     {"step_error", "measured less calibrated height of the step"},
+    {"structural_resolution", "smallest wave period shown with half its amplitude or more"},
     {"length_error", "measured less calibrated distance of two ball centres in the volume"},
     {"relative_range_error", "measured less true distance behind the first plate, along the sight"},
     {"disparity_bad_2px", "share of the matched pixels off by more than 2 px"},

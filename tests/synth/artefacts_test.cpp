@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <numbers>
 
 #include "libscan/core/error.h"
 
@@ -88,6 +89,36 @@ TEST(Artefacts, FacesLookAtTheScanner) {
   }
   for (const PlacedObjects& place : cylinder_places(artefacts, scanner()))
     EXPECT_NEAR(place[0].world_from_object.linear().col(2).dot(back), 0, 1e-14);
+}
+
+// The mesh's vertices lie on the wave, crests at whole periods from the centre of the plate, which
+// lies across the sight; normals point back to the scanner, and along y the wave is the same.
+TEST(Artefacts, WavesRunAlongTheirAxisAndFaceTheScanner) {
+  const Eigen::Vector3d back = -scanner().linear().col(2);
+  const double period = artefacts.plate_m / 7.3;
+  for (const WaveAxis axis : {WaveAxis::x, WaveAxis::y}) {
+    const Object plate = wave_plate(artefacts, scanner(), period, axis).front();
+    const Mesh& mesh = std::get<Mesh>(plate.geometry);
+    const Eigen::Vector3d along = scanner().linear().col(axis == WaveAxis::x ? 0 : 1);
+    Eigen::Vector3d low = artefacts.centre_m, high = low;
+    for (const Eigen::Vector3d& vertex : mesh.vertices) {
+      const Eigen::Vector3d x = plate.world_from_object * vertex;
+      const double height =
+          period / 20 *
+          std::cos(2 * std::numbers::pi * (x - artefacts.centre_m).dot(along) / period);
+      EXPECT_NEAR((x - artefacts.centre_m).dot(back), height, 1e-12);
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    EXPECT_NEAR((high - low).dot(scanner().linear().col(0).cwiseAbs()), artefacts.plate_m, 1e-12);
+    EXPECT_NEAR((high - low).dot(scanner().linear().col(1).cwiseAbs()), artefacts.plate_m, 1e-12);
+    for (const Triangle& t : mesh.triangles) {
+      const Eigen::Vector3d a = mesh.vertices[t[0]];
+      const Eigen::Vector3d normal =
+          (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).normalized();
+      EXPECT_GT((plate.world_from_object.linear() * normal).dot(back), std::cos(0.305));
+    }
+  }
 }
 
 TEST(Artefacts, RefuseWhatDoesNotFit) {

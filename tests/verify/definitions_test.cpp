@@ -5,12 +5,16 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "libscan/verify/artefacts.h"
 #include "libscan/verify/disparity_error.h"
 #include "libscan/verify/pose_error.h"
 #include "libscan/verify/self_intersection.h"
 #include "libscan/verify/size_error.h"
 #include "libscan/verify/stated_uncertainty.h"
+#include "libscan/verify/structural_resolution.h"
 #include "libscan/verify/surface_error.h"
 #include "tests/core/meshes.h"
 
@@ -68,6 +72,13 @@ TEST(Definition, IsThereForEachArtefactAndDisparityFigure) {
   expect_defined(spacing_errors(std::vector{BallBar{ball, ball}}, 0));
   expect_defined(flatness_errors(std::vector<Points>{plate}));
   expect_defined(step_errors(std::vector{Step{plate, plate}}, 0));
+  WavePlate waves{.edge_m = 2.4, .period_m = 0.8, .amplitude_m = 1};
+  for (const auto& x : plate)
+    for (const double a : {-1.1, 0.1})
+      for (const double b : {-1.1, 0.1})
+        waves.points.push_back(
+            {x.x() + a, x.y() + b, std::cos(2.5 * std::numbers::pi * (x.x() + a))});
+  expect_defined({structural_resolution(std::vector<std::vector<WavePlate>>{{waves}})});
   expect_defined(cylinder_errors(std::vector{CylinderPlace{mantle, {}}}, 2));
   Image<float> disparity(2, 2, 5.0F);
   expect_defined(disparity_error(disparity, disparity, 0));
