@@ -52,7 +52,7 @@ MethodChoice choose_method(const PreparedPoints& points) {
   choice.open_share = open_share(points.cloud);
   choice.unflatness = median_unflatness(local_planes(points.cloud.points, neighbours));
   const std::string missing =
-      "seen from itself, " + percent(choice.open_share) + " of it is missing";
+      "seen from itself, at most some " + percent(choice.open_share) + " of it is missing";
   if (choice.open_share <= most_open) {
     choice.reason = "the surface is closed (" + missing + "), which SSD makes most accurately";
   } else if (choice.unflatness < flat) {
