@@ -11,6 +11,7 @@
 #include "libscan/reconstruct/scale_space.h"
 #include "libscan/reconstruct/sharp_features.h"
 #include "libscan/reconstruct/support.h"
+#include "libscan/reconstruct/trim.h"
 
 namespace scan {
 namespace {
@@ -86,6 +87,7 @@ SurfaceResult reconstruct(const PointCloud& cloud, std::span<const Eigen::Vector
   if (options.method == ReconstructMethod::automatic) choice = choose_method(points);
   require_extent(points.cloud, choice.method);
   SurfaceResult result = surface_by(choice.method, points, options, progress);
+  if (choice.trim_m > 0) trim(result, choice.trim_m);
   result.method = name_of(choice.method);
   result.method_reason = choice.reason;
   result.invalid_points += points.invalid_points;
