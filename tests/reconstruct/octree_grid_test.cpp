@@ -72,9 +72,36 @@ TEST(OctreeGrid, CountsItsBlocksWithoutBuildingIt) {
   std::size_t blocks = 0;
   for (const BlockLevel& level : make_octree_grid(points, depths, 4).levels)
     blocks += level.blocks.size();
-  EXPECT_EQ(octree_blocks(points, depths, 4, 1e9), blocks);
-  EXPECT_GT(octree_blocks(points, depths, 4, 10), 10u);  // enough
-  EXPECT_LT(octree_blocks(points, depths, 4, 10), blocks);
+  const Eigen::AlignedBox3d cube(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
+  EXPECT_EQ(octree_blocks(points, depths, 4, cube, 1e9).all, blocks);
+  EXPECT_GT(octree_blocks(points, depths, 4, cube, 10).all, 10u);  // enough
+  EXPECT_LT(octree_blocks(points, depths, 4, cube, 10).all, blocks);
+}
+
+// By the definition: what the cells of a finer lattice that meet the box are made of.
+TEST(OctreeGrid, CountsTheBlocksThatReachABox) {
+  const std::vector<Eigen::Vector3d> points = {{0.5, 0.5, 0.5}, {0.1, 0.2, 0.3}};
+  const std::vector<int> depths = {8, 6};
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(0.3, 0.3, 0.495), Eigen::Vector3d(0.5, 0.6, 0.6));
+  std::size_t needed = 0, reaching = 0, active = 0;
+  for (const BlockLevel& level : make_octree_grid(points, depths, 4).levels) {
+    for (std::size_t b = 0; b < level.active; ++b) {
+      const BlockPlace& p = level.blocks[b];
+      bool is_needed = true;  // the functions of cell i are i ... i+2
+      for (int a = 0; a < 3; ++a) {
+        const int first_cell = cell_of(box.min()[a], level.cells());
+        const int last_cell = cell_of(box.max()[a], level.cells());
+        is_needed &= 4 * p[a] <= last_cell + 2 && 4 * p[a] + 3 >= first_cell;
+      }
+      needed += is_needed;
+      active += 1;
+      reaching += reaches(p, level.depth, box);
+      EXPECT_TRUE(reaches(p, level.depth, box) || !is_needed);
+    }
+  }
+  EXPECT_EQ(octree_blocks(points, depths, 4, box, 1e9).reaching, reaching);
+  EXPECT_GT(needed, 0u);
+  EXPECT_LT(reaching, active);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ Distances distances(const Mesh& mesh, const SplineField& field, bool at_seams) {
 TEST(SsdParts, AgreeWithTheWhole) {
   const Samples samples = prepare_samples(torus_cloud(10000));
   const std::vector<int> depths = sample_depths(samples, complete_depth, 12);
-  const SsdProblem problem{samples, depths, complete_depth};
+  const SsdProblem problem{samples, depths, complete_depth, 12};
   const SsdFitOptions options{.relative_residual = 1e-3};
   const OctreeGrid grid = make_octree_grid(samples.points, depths, complete_depth);
   const SsdFit whole = fit_surface(grid, samples, options);
@@ -156,25 +156,33 @@ TEST(Ssd, RefusesWhatDoesNotFitEvenInParts) {
   }
 }
 
-void expect_forecast(const PointCloud& cloud) {
+void expect_forecast(const PointCloud& cloud, int split) {
   const Samples samples = prepare_samples(cloud);
   const std::vector<int> depths = sample_depths(samples, complete_depth, 12);
-  const double forecast_mib = 1024 * forecast_gib({samples, depths, complete_depth}, 1e9);
+  const int finest = *std::max_element(depths.begin(), depths.end());
+  const SsdProblem problem{samples, depths, complete_depth, finest + 1};
+  const double forecast =
+      split == 0 ? forecast_gib(problem, 1e9) : forecast_in_parts_gib(problem, split, 1e9);
   restart_peak_memory();
   const double before_mib = peak_memory_mib();
-  ssd(cloud);
+  const SurfaceResult result = ssd(cloud, {.memory_gib = split == 0 ? 16 : forecast});
   const double took_mib = peak_memory_mib() - before_mib;
-  testing::Test::RecordProperty("forecast_share", std::to_string(forecast_mib / took_mib));
-  EXPECT_LT(took_mib, 1.5 * forecast_mib);
-  EXPECT_GT(took_mib, forecast_mib / 1.5);
+  EXPECT_EQ(result.parts.parts_per_axis, std::size_t{1} << split);
+  testing::Test::RecordProperty("forecast_share", std::to_string(1024 * forecast / took_mib));
+  EXPECT_LT(took_mib, 1.5 * 1024 * forecast);
+  EXPECT_GT(took_mib, 1024 * forecast / 1.5);
 }
 
 TEST(SsdParts, ForecastTheMemoryOfExactSamples) {
-  expect_forecast(torus_cloud(30000));
+  expect_forecast(torus_cloud(30000), 0);
 }
 
 TEST(SsdParts, ForecastTheMemoryOfScatteredSamples) {
-  expect_forecast(scattered(torus_cloud(60000), 0.004));
+  expect_forecast(scattered(torus_cloud(60000), 0.004), 0);
+}
+
+TEST(SsdParts, ForecastTheirMemory) {
+  expect_forecast(torus_cloud(25000, 1, 0.15), 1);
 }
 
 }  // namespace
