@@ -12,10 +12,11 @@
 namespace scan {
 namespace {
 
-// Regions only have to be small against the reach of the sums. But one must hold the scatter on
-// both sides of its surface, 3 sigma each way: samples of one side alone gain from any fit that
-// leans to them.
-constexpr double samples_per_region = 12, sigmas_per_region = 6;
+// A region must hold the scatter on both sides of its surface, 3 sigma each way: samples of one
+// side alone gain from any fit that leans to them. And enough samples that strays, which lie
+// together, do not ask for a length of their own: 12 make the edges of a sharp part 7 % better, and
+// leave 25 handles along the bracket's, where 50 leave 4.
+constexpr double samples_per_region = 50, sigmas_per_region = 6;
 // Two fits differ by the same waves over some lengths: sums must reach over several such, or chance
 // decides. Each pass of around() spreads by a variance of half a region's width squared.
 constexpr double reach_in_lengths = 2;

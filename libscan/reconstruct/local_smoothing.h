@@ -22,7 +22,7 @@ inline constexpr double lengths_per_cell = 0.6;
 double leverage(double area, double length);
 double posterior_variance(double area, double length);
 
-// Regions hold about 12 samples, more where scatter is wide, and share their sums with those
+// Regions hold about 50 samples, more where scatter is wide, and share their sums with those
 // around, as far as two smoothing lengths. A region's risk is the mean of r_i^2 + 2 sigma_i^2
 // leverage_i (Mallows 1973; Stein 1981): up to a constant the expected squared distance of the fit
 // from the truth at the samples. The leverage is that of a continuum: cells of 1.7 lengths cut its

@@ -165,12 +165,12 @@ std::vector<Measurement> cylinder_errors(std::span<const CylinderPlace> places,
   check_places(places.size(), "cylinder");
   LargestForm largest;
   double diameter_m = 0, angle_rad = 0;
-  for (const auto& [points, true_axis] : places) {
+  for (const CylinderPlace& place : places) {
     const CylinderFit fit =
-        refitted(points, [&](const Points& p) { return fit_cylinder(p, true_axis); });
-    largest.add(residuals_of(points, fit));
+        refitted(place.points, [&](const Points& p) { return fit_cylinder(p, place.true_axis); });
+    largest.add(residuals_of(place.points, fit));
     diameter_m = farther_from_zero(diameter_m, 2 * fit.radius_m - true_diameter_m);
-    const Eigen::Vector3d &a = fit.axis.direction, &b = true_axis.direction;
+    const Eigen::Vector3d &a = fit.axis.direction, &b = place.true_axis.direction;
     angle_rad = std::max(angle_rad, std::atan2(a.cross(b).norm(), std::abs(a.dot(b))));
   }
   const auto over = [&](const char* what) { return over_places(places.size(), what); };

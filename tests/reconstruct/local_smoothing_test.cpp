@@ -64,10 +64,10 @@ TEST(LocalSmoothing, ChoosesByRegion) {
   }
   const std::vector<double> length = smoothing.lengths();
   for (std::size_t i = 0; i < length.size(); ++i) {
-    // Regions are sqrt(12 / 10000) wide and one lies across the middle. The sums of the trial 0.02,
-    // the first that is compared, reach ceil(2 (2 * 0.02 / 0.035)^2) = 3 regions, mixed lengths one
+    // Regions are sqrt(50 / 10000) wide and one lies across the middle. The sums of the trial 0.02,
+    // the first that is compared, reach ceil(2 (2 * 0.02 / 0.071)^2) = 1 region, mixed lengths one
     // more.
-    const double margin = (1 + 3 + 1) * std::sqrt(12e-4);
+    const double margin = (1 + 1 + 1) * std::sqrt(50e-4);
     if (samples.points[i][0] < 0.5 - margin) {
       EXPECT_NEAR(length[i], 0.04, 1e-12);
     }
@@ -80,7 +80,7 @@ TEST(LocalSmoothing, ChoosesByRegion) {
 }
 
 // What a region's own samples say by chance does not decide over a length that spans many regions:
-// one stripe (regions are 0.035 wide) that a trial makes worse, as much as its two neighbours gain,
+// one stripe (regions are 0.071 wide) that a trial makes worse, as much as its two neighbours gain,
 // keeps the old length if the trial is short and takes the new one if it is long.
 TEST(LocalSmoothing, WeighsALongTrialOverItsReach) {
   const Samples samples = unit_square(100, 1e-3);
@@ -89,12 +89,12 @@ TEST(LocalSmoothing, WeighsALongTrialOverItsReach) {
     smoothing.judge(first, std::vector<double>(samples.points.size(), 1.0), all_trusted(samples));
     std::vector<double> residuals;
     for (const auto& u : samples.points)
-      residuals.push_back(u[0] > 0.5196 && u[0] < 0.5543 ? 1.6 : 0.5);
+      residuals.push_back(u[0] > 0.4949 && u[0] < 0.5656 ? 1.6 : 0.5);
     smoothing.judge(second, residuals, all_trusted(samples));
     double sum = 0, count = 0;
     const std::vector<double> lengths = smoothing.lengths();
     for (std::size_t i = 0; i < lengths.size(); ++i)
-      if (samples.points[i][0] > 0.53 && samples.points[i][0] < 0.545) {
+      if (samples.points[i][0] > 0.52 && samples.points[i][0] < 0.54) {
         sum += lengths[i];
         ++count;
       }
