@@ -238,14 +238,25 @@ OctreeGrid make_octree_grid(std::span<const Eigen::Vector3d> points, std::span<c
   return grid;
 }
 
-std::size_t octree_blocks(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
-                          int complete_depth, double enough) {
-  std::size_t blocks = 0;
+bool reaches(const BlockPlace& block, int depth, const Eigen::AlignedBox3d& box) {
+  const double width = std::ldexp(1.0, -depth);
+  const Eigen::Vector3d first = block_width * Eigen::Vector3d(block[0], block[1], block[2]);
+  // Functions live on the two cells before as well; one more for cells on the border.
+  return Eigen::AlignedBox3d(width * (first - Eigen::Vector3d::Constant(3)),
+                             width * (first + Eigen::Vector3d::Constant(block_width + 1)))
+      .intersects(box);
+}
+
+BlockCount octree_blocks(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
+                         int complete_depth, const Eigen::AlignedBox3d& box, double enough) {
+  BlockCount count;
   for_levels(points, depths, complete_depth, [&](BlockLevel&& level) {
-    blocks += level.keys.size();
-    return static_cast<double>(blocks) <= enough;
+    count.all += level.blocks.size();
+    for (std::size_t b = 0; b < level.active; ++b)
+      count.reaching += reaches(level.blocks[b], level.depth, box);
+    return static_cast<double>(count.all) <= enough;
   });
-  return blocks;
+  return count;
 }
 
 }  // namespace scan

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -70,9 +71,16 @@ struct OctreeGrid {
 OctreeGrid make_octree_grid(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
                             int complete_depth);
 
-// How many blocks, active and halo, such a grid has; counting stops above `enough`.
-std::size_t octree_blocks(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
-                          int complete_depth, double enough);
+// Whether cells in the box, or at its border, need functions of the block.
+bool reaches(const BlockPlace& block, int depth, const Eigen::AlignedBox3d& box);
+
+// How many blocks, active and halo, such a grid has, and how many active ones reach the box;
+// counting stops when all are above `enough`.
+struct BlockCount {
+  std::size_t all = 0, reaching = 0;
+};
+BlockCount octree_blocks(std::span<const Eigen::Vector3d> points, std::span<const int> depths,
+                         int complete_depth, const Eigen::AlignedBox3d& box, double enough);
 
 // The finest depth at which any active function reaches each point: there a sample sees all of f.
 std::vector<int> depths_seen(const OctreeGrid& grid, std::span<const Eigen::Vector3d> points);

@@ -129,7 +129,8 @@ SurfaceResult ssd(const PointCloud& cloud, const SsdOptions& options, const Prog
   const int complete_depth = std::min(most_complete_depth, options.depth);
   const std::vector<int> depths = sample_depths(samples, complete_depth, options.depth);
   if (progress) progress("octree", 0);
-  const SsdProblem problem{samples, depths, complete_depth};
+  const int finest = std::max(complete_depth, *std::max_element(depths.begin(), depths.end()));
+  const SsdProblem problem{samples, depths, complete_depth, surface_depth(finest, options)};
   const SsdFitOptions fit_options{.length = options.smoothing_length_m / samples.box.side_m,
                                   .relative_residual = options.relative_residual,
                                   .max_iterations = options.max_iterations};

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <string>
 
 #include "libscan/core/error.h"
@@ -18,9 +18,17 @@ constexpr std::size_t most_thinned = 10000, least_step = 10;
 constexpr int most_split = 5;
 constexpr double least_blended_cells = 4;
 constexpr double gib = 1073741824.0;
-// Measured (ssd_parts_test.cpp): unknowns, work vectors and tables by block, terms by sample; what
-// a part leaves behind is its coefficients.
-constexpr double bytes_per_block = 5000, bytes_per_sample = 500, bytes_kept = 300;
+// Bytes. Of a fit: the coarsest level's matrix, dense over 10^3 functions, and its factor;
+// unknowns, work vectors, tables and factors by block; terms by sample.
+constexpr double fit_always = 2 * 1e6 * sizeof(double), fit_per_block = 5000, fit_per_sample = 200;
+// Of each sample to the end: itself, its depth, length and parts, and a search tree of all.
+constexpr double stay_per_sample = 100;
+// While the samples are made.
+constexpr double prepare_per_sample = 400;
+// What a part leaves behind of a block: coefficients and key.
+constexpr double left_per_block = sizeof(double) * block_size + sizeof(std::uint64_t);
+// Of the mesh while it is made: a crossed cell twice and the triangles twice, for each vertex.
+constexpr double mesh_per_vertex = 220;
 
 // Some of the samples, with their depths.
 struct Selection {
@@ -112,14 +120,8 @@ void keep_part(const Eigen::AlignedBox3d& box, OctreeGrid& grid, LevelArrays& co
     BlockLevel kept;
     kept.depth = level.depth;
     std::vector<double> values;
-    const double width = std::ldexp(1.0, -level.depth);
     for (std::size_t b = 0; b < level.active; ++b) {
-      const Eigen::Vector3d first =
-          block_width * Eigen::Vector3d(level.blocks[b][0], level.blocks[b][1], level.blocks[b][2]);
-      // Functions live on the two cells before as well; one more for cells on the border.
-      const Eigen::AlignedBox3d reach(width * (first - Eigen::Vector3d::Constant(3)),
-                                      width * (first + Eigen::Vector3d::Constant(5)));
-      if (!reach.intersects(box)) continue;
+      if (!reaches(level.blocks[b], level.depth, box)) continue;
       kept.keys.push_back(level.keys[b]);
       const auto begin = coefficients[l].begin() + static_cast<std::ptrdiff_t>(b * block_size);
       values.insert(values.end(), begin, begin + block_size);
@@ -136,6 +138,29 @@ std::size_t active_functions(const OctreeGrid& grid) {
   std::size_t count = 0;
   for (const BlockLevel& level : grid.levels) count += level.active * block_size;
   return count;
+}
+
+struct FitForecast {
+  double fit_gib, left_gib;  // while it runs; of what reaches the box
+};
+
+FitForecast forecast_fit(const SsdProblem& problem, const Eigen::AlignedBox3d& box,
+                         double enough_gib) {
+  const double count = static_cast<double>(problem.samples.points.size());
+  const double without_blocks = (fit_always + fit_per_sample * count) / gib;
+  const double enough_blocks = (enough_gib - without_blocks) * gib / fit_per_block;
+  const BlockCount blocks = octree_blocks(problem.samples.points, problem.depths,
+                                          problem.complete_depth, box, enough_blocks);
+  return {without_blocks + fit_per_block / gib * static_cast<double>(blocks.all),
+          left_per_block / gib * static_cast<double>(blocks.reaching)};
+}
+
+// A surface that lies any way crosses the edges of cells 3/2 times per area of a face: the mean of
+// |x| + |y| + |z| over unit vectors. Each crossing is a vertex.
+double mesh_gib(const SsdProblem& problem) {
+  const auto& area = problem.samples.area;
+  const double total = std::accumulate(area.begin(), area.end(), 0.0);
+  return mesh_per_vertex / gib * 1.5 * std::ldexp(total, 2 * problem.surface_depth);
 }
 
 // Fits the selected samples and returns the smoothing length at each.
@@ -156,39 +181,39 @@ std::vector<double> add_field(const Selection& part, int complete_depth,
 }  // namespace
 
 double forecast_gib(const SsdProblem& problem, double enough_gib) {
-  const double by_sample = bytes_per_sample * static_cast<double>(problem.samples.points.size());
-  const double most_blocks = (enough_gib * gib - by_sample) / bytes_per_block;
-  const double blocks = static_cast<double>(
-      octree_blocks(problem.samples.points, problem.depths, problem.complete_depth, most_blocks));
-  return (by_sample + bytes_per_block * blocks) / gib;
+  const double count = static_cast<double>(problem.samples.points.size());
+  return std::max(prepare_per_sample / gib * count,
+                  stay_per_sample / gib * count + forecast_fit(problem, {}, enough_gib).fit_gib);
+}
+
+double forecast_in_parts_gib(const SsdProblem& problem, int split, double enough_gib) {
+  const Thinned rest = thinned(problem);
+  const double count = static_cast<double>(problem.samples.points.size());
+  double stay_gib = stay_per_sample / gib * count, largest_gib = mesh_gib(problem);
+  std::uint32_t part = 0;
+  for (const auto& chosen : samples_of_parts(problem, split)) {
+    const Eigen::AlignedBox3d box = part_box(part++, split, blended_share);
+    if (chosen.empty()) continue;
+    const Selection near = selected(problem, chosen, rest);
+    const FitForecast of_part =
+        forecast_fit({near.samples, near.depths, problem.complete_depth, problem.surface_depth},
+                     box, enough_gib);
+    largest_gib = std::max(largest_gib, of_part.fit_gib);
+    stay_gib += of_part.left_gib;
+    if (stay_gib + largest_gib > enough_gib) break;
+  }
+  return std::max(prepare_per_sample / gib * count, stay_gib + largest_gib);
 }
 
 int needed_split(const SsdProblem& problem, double limit_gib) {
-  const double whole = forecast_gib(problem, std::numeric_limits<double>::infinity());
-  if (whole <= limit_gib) return 0;
+  if (forecast_gib(problem, limit_gib) <= limit_gib) return 0;
   const int finest = *std::max_element(problem.depths.begin(), problem.depths.end());
-  const Thinned rest = thinned(problem);
-  // All samples and what is left behind of the parts, which overlap by 1/8 on each side.
-  const double overlap = (1 + 2 * around_share) * (1 + 2 * around_share);
-  const double by_sample =
-      bytes_per_sample * static_cast<double>(problem.samples.points.size()) / gib;
-  const double kept = by_sample + overlap * (whole - by_sample) * bytes_kept / bytes_per_block;
-  double needed = whole;
   for (int split = 1; split <= most_split; ++split) {
     if (std::ldexp(blended_share, finest - split) < least_blended_cells) break;
-    double largest = 0;
-    for (const auto& chosen : samples_of_parts(problem, split)) {
-      if (chosen.empty() || kept + largest > limit_gib) continue;
-      const Selection part = selected(problem, chosen, rest);
-      largest = std::max(
-          largest, forecast_gib({part.samples, part.depths, problem.complete_depth}, limit_gib));
-    }
-    needed = kept + largest;
-    if (needed <= limit_gib) return split;
+    if (forecast_in_parts_gib(problem, split, limit_gib) <= limit_gib) return split;
   }
   throw Error(Trouble::resource,
-              "ssd: needs more than " + std::to_string(needed) + " GiB even in parts, limit " +
-                  std::to_string(limit_gib) + " GiB",
+              "ssd: needs more than " + std::to_string(limit_gib) + " GiB even in parts",
               "use a smaller depth, thin the points or allow more memory");
 }
 

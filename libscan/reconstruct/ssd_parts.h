@@ -12,6 +12,7 @@ struct SsdProblem {
   const Samples& samples;
   std::span<const int> depths;  // of the samples
   int complete_depth;
+  int surface_depth;  // of the mesh
 };
 
 // Most memory that a fit of all samples at once takes, GiB, from the octree's blocks and the number
@@ -19,7 +20,11 @@ struct SsdProblem {
 // `enough_gib`.
 double forecast_gib(const SsdProblem& problem, double enough_gib);
 
-// The least split (blended_field.h) whose fits need no more than `limit_gib`; 0: all at once.
+// Likewise of a fit in parts (split: blended_field.h): the samples, what all parts leave behind,
+// and the largest part's fit or the mesh, whichever takes more.
+double forecast_in_parts_gib(const SsdProblem& problem, int split, double enough_gib);
+
+// The least split whose fits need no more than `limit_gib`; 0: all at once.
 // Throws scan::Error (resource) if even parts as small as blending allows need more.
 int needed_split(const SsdProblem& problem, double limit_gib);
 

@@ -72,9 +72,41 @@ TEST(OctreeGrid, CountsItsBlocksWithoutBuildingIt) {
   std::size_t blocks = 0;
   for (const BlockLevel& level : make_octree_grid(points, depths, 4).levels)
     blocks += level.blocks.size();
-  EXPECT_EQ(octree_blocks(points, depths, 4, 1e9), blocks);
-  EXPECT_GT(octree_blocks(points, depths, 4, 10), 10u);  // enough
-  EXPECT_LT(octree_blocks(points, depths, 4, 10), blocks);
+  const Eigen::AlignedBox3d cube(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
+  EXPECT_EQ(octree_blocks(points, depths, 4, cube, 1e9).all, blocks);
+  EXPECT_GT(octree_blocks(points, depths, 4, cube, 10).all, 10u);  // enough
+  EXPECT_LT(octree_blocks(points, depths, 4, cube, 10).all, blocks);
+}
+
+// Cells of a level that meet the box, by name; cell i has the functions i ... i+2 on each axis.
+bool is_needed(const BlockPlace& block, int depth, const Eigen::AlignedBox3d& box) {
+  for (int a = 0; a < 3; ++a) {
+    const int first_cell = cell_of(box.min()[a], 1 << depth);
+    const int last_cell = cell_of(box.max()[a], 1 << depth);
+    if (4 * block[a] > last_cell + 2 || 4 * block[a] + 3 < first_cell) return false;
+  }
+  return true;
+}
+
+TEST(OctreeGrid, CountsTheBlocksThatReachABox) {
+  const std::vector<Eigen::Vector3d> points = {{0.5, 0.5, 0.5}, {0.1, 0.2, 0.3}};
+  const std::vector<int> depths = {8, 6};
+  const OctreeGrid grid = make_octree_grid(points, depths, 4);
+  for (double at = 0.03; at < 0.8; at += 0.05) {
+    const Eigen::Vector3d low = Eigen::Vector3d::Constant(at);
+    const Eigen::AlignedBox3d box(low, low + Eigen::Vector3d(0.17, 0.11, 0.07));
+    std::size_t reaching = 0, active = 0;
+    for (const BlockLevel& level : grid.levels) {
+      active += level.active;
+      for (std::size_t b = 0; b < level.active; ++b) {
+        const bool counts = reaches(level.blocks[b], level.depth, box);
+        EXPECT_TRUE(counts || !is_needed(level.blocks[b], level.depth, box));
+        reaching += counts;
+      }
+    }
+    EXPECT_EQ(octree_blocks(points, depths, 4, box, 1e9).reaching, reaching);
+    EXPECT_LT(reaching, active);
+  }
 }
 
 }  // namespace
