@@ -16,11 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-using Units = std::map<std::string, double>;
-const Units length_units = {{"_m", 1}, {"_mm", 1e-3}, {"_um", 1e-6}, {"_nm", 1e-9}};
-const Units angle_units = {{"_rad", 1}, {"_deg", rad_from_deg(1)}};
-const Units time_units = {{"_s", 1}, {"_ms", 1e-3}, {"_us", 1e-6}, {"_ns", 1e-9}};
-const Units frequency_units = {{"_hz", 1}, {"_mhz", 1e6}};
+using Units = JsonUnits;
 
 // A value as a message shows it.
 std::string shown(const json& value) {
@@ -35,28 +31,7 @@ std::string listed(std::string_view name, const Units& units) {
   return text;
 }
 
-const Units& units_of(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::length:
-      return length_units;
-    case Quantity::angle:
-      return angle_units;
-    case Quantity::time:
-      return time_units;
-    case Quantity::frequency:
-      break;
-  }
-  return frequency_units;
-}
-
 }  // namespace
-
-std::vector<std::string> unit_suffixes(Quantity quantity) {
-  std::vector<std::string> suffixes;
-  for (const auto& [suffix, scale] : units_of(quantity))
-    suffixes.insert(scale == 1 ? suffixes.begin() : suffixes.end(), suffix);
-  return suffixes;
-}
 
 JsonReader::JsonReader(const json& object, std::string place)
     : object_(&object), place_(std::move(place)) {
@@ -111,8 +86,9 @@ bool JsonReader::has(std::string_view key) {
 }
 
 bool JsonReader::has_quantity(std::string_view name) const {
-  for (const Units* units : {&length_units, &angle_units, &time_units, &frequency_units})
-    for (const auto& [suffix, scale] : *units)
+  for (const Quantity quantity :
+       {Quantity::length, Quantity::angle, Quantity::time, Quantity::frequency})
+    for (const auto& [suffix, scale] : units_of(quantity))
       if (object_->contains(std::string(name) + suffix)) return true;
   return false;
 }
@@ -199,31 +175,32 @@ double JsonReader::quantity(std::string_view name, const Units& units, const dou
 }
 
 double JsonReader::length_m(std::string_view name) {
-  return quantity(name, length_units, nullptr);
+  return quantity(name, units_of(Quantity::length), nullptr);
 }
 double JsonReader::length_m(std::string_view name, double otherwise_m) {
-  return quantity(name, length_units, &otherwise_m);
+  return quantity(name, units_of(Quantity::length), &otherwise_m);
 }
 double JsonReader::angle_rad(std::string_view name) {
-  return quantity(name, angle_units, nullptr);
+  return quantity(name, units_of(Quantity::angle), nullptr);
 }
 double JsonReader::angle_rad(std::string_view name, double otherwise_rad) {
-  return quantity(name, angle_units, &otherwise_rad);
+  return quantity(name, units_of(Quantity::angle), &otherwise_rad);
 }
 double JsonReader::time_s(std::string_view name) {
-  return quantity(name, time_units, nullptr);
+  return quantity(name, units_of(Quantity::time), nullptr);
 }
 double JsonReader::time_s(std::string_view name, double otherwise_s) {
-  return quantity(name, time_units, &otherwise_s);
+  return quantity(name, units_of(Quantity::time), &otherwise_s);
 }
 double JsonReader::frequency_hz(std::string_view name) {
-  return quantity(name, frequency_units, nullptr);
+  return quantity(name, units_of(Quantity::frequency), nullptr);
 }
 
 std::vector<double> JsonReader::lengths_m(std::string_view name) {
   double scale = 1;
   std::string key;
-  if (!find_quantity(name, length_units, scale, key)) fail_missing(name, length_units);
+  if (!find_quantity(name, units_of(Quantity::length), scale, key))
+    fail_missing(name, units_of(Quantity::length));
   auto list = numbers(key);
   for (double& entry : list) entry *= scale;
   return list;
@@ -232,7 +209,8 @@ std::vector<double> JsonReader::lengths_m(std::string_view name) {
 std::vector<double> JsonReader::frequencies_hz(std::string_view name) {
   double scale = 1;
   std::string key;
-  if (!find_quantity(name, frequency_units, scale, key)) fail_missing(name, frequency_units);
+  if (!find_quantity(name, units_of(Quantity::frequency), scale, key))
+    fail_missing(name, units_of(Quantity::frequency));
   auto list = numbers(key);
   for (double& entry : list) entry *= scale;
   return list;
@@ -247,7 +225,7 @@ Eigen::Vector3d JsonReader::vector_m(std::string_view name) {
 Eigen::Vector3d JsonReader::vector_m(std::string_view name, const Eigen::Vector3d& otherwise_m) {
   double scale = 1;
   std::string key;
-  return find_quantity(name, length_units, scale, key) ? vector_m(name) : otherwise_m;
+  return find_quantity(name, units_of(Quantity::length), scale, key) ? vector_m(name) : otherwise_m;
 }
 
 JsonReader JsonReader::object(std::string_view key) {

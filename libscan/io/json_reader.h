@@ -5,7 +5,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <set>
@@ -14,12 +13,9 @@
 #include <vector>
 
 #include "libscan/core/pose.h"
+#include "libscan/io/json_units.h"
 
 namespace scan {
-
-// What a key with a unit holds, and the suffixes that name its unit: "_m", "_mm", ... (SI first).
-enum class Quantity { length, angle, time, frequency };
-std::vector<std::string> unit_suffixes(Quantity quantity);
 
 // A view on one JSON object. Each getter marks its key as known; `finish()` refuses what is left.
 // Lengths carry their unit in the key: length_m("radius") reads radius_m, _mm, _um or _nm
@@ -74,12 +70,11 @@ class JsonReader {
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
  private:
-  using Units = std::map<std::string, double>;  // a key's suffix -> its size in SI
-  [[noreturn]] void fail_missing(std::string_view name, const Units& units) const;
+  [[noreturn]] void fail_missing(std::string_view name, const JsonUnits& units) const;
   const nlohmann::json* find(std::string_view key);
-  const nlohmann::json* find_quantity(std::string_view name, const Units& units, double& scale,
+  const nlohmann::json* find_quantity(std::string_view name, const JsonUnits& units, double& scale,
                                       std::string& key);
-  double quantity(std::string_view name, const Units& units, const double* otherwise);
+  double quantity(std::string_view name, const JsonUnits& units, const double* otherwise);
 
   const nlohmann::json* object_;
   std::string place_;

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// What the couples' scatter makes of the poses.
+#include "libscan/align/joint_refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "libscan/align/joint_solver.h"
+#include "libscan/align/shared_noise.h"
+#include "tests/align/joint_forms.h"
+
+namespace scan::test {
+namespace {
+
+using Eigen::Vector3d;
+
+// One scan against the anchor, pulls known: B^-1 M B^-1 times what the whitened pulls share.
+TEST(JointCovariances, AreTheSandwichOfCurvatureAndScatter) {
+  RandomStream random(4, 0, 0);
+  const std::vector<JointForm> forms = {random_form(1, 0, random), random_form(0, 1, random)};
+  std::vector<JointDetail> details(2);
+  Matrix6 scatter = Matrix6::Zero();
+  std::vector<Vector6> pulls;
+  std::vector<Vector3d> at;
+  for (std::int64_t place = 0; place < 20; ++place) {
+    const Vector6 there = random_row(random), back = random_row(random);
+    details[0].pulls.push_back({{place, 0, 0}, there});
+    details[1].pulls.push_back({{place, 0, 0}, back});
+    pulls.push_back(there - back);  // scan 1 is the second's target
+    at.emplace_back(double(place), 0, 0);
+    scatter += pulls.back() * pulls.back().transpose();
+  }
+  const Eigen::LLT<Matrix6> spread(scatter);
+  for (Vector6& pull : pulls) pull = spread.matrixL().solve(pull).eval();
+  const double share = noise_sharing(pulls, at, 6);
+  for (std::size_t k = 0; k < 2; ++k) details[k].curvature = forms[k].a;
+  const Matrix6 inverse = (forms[0].a + forms[1].a).inverse();
+  JointFrame frame = frame_of(2);
+  frame.size_m = 3;
+  std::vector<JointForm> scaled = forms;
+  for (JointForm& form : scaled) form.frame.size_m = 3;
+  const auto covariances = joint_covariances(scaled, details, frame, JointBasis(12, 0));
+  ASSERT_TRUE(covariances[1]);
+  Matrix6 units = Matrix6::Identity();
+  units.bottomRightCorner<3, 3>() *= 3;
+  const Matrix6 expected = share * units * inverse * scatter * inverse * units;
+  EXPECT_LT((*covariances[1] - expected).norm(), 1e-7 * expected.norm());
+  EXPECT_EQ(*covariances[0], Matrix6::Zero());
+}
+
+// Scans 1 and 2 in a row, the noise between them shared by places and ten times stronger: what
+// holds scan 1 is its couple with the anchor alone. So its covariance is that of this couple, times
+// a number.
+TEST(JointCovariances, OfAChainAddUpFromTheAnchor) {
+  RandomStream random(6, 0, 0);
+  const std::vector<JointForm> forms = {random_form(1, 0, random), random_form(2, 1, random)};
+  std::vector<JointDetail> details(2);
+  Matrix6 scatter = Matrix6::Zero();
+  for (std::int64_t place = 0; place < 2000; ++place) {
+    const Vector6 near = random_row(random);
+    details[0].pulls.push_back({{place, 0, 0}, near});
+    scatter += near * near.transpose();
+  }
+  Vector6 shared = Vector6::Zero();
+  for (std::int64_t place = 2000; place < 4000; ++place) {
+    if (place % 20 == 0) shared = 10 * random_row(random);
+    details[1].pulls.push_back({{place, 0, 0}, shared});
+  }
+  for (std::size_t k = 0; k < 2; ++k) details[k].curvature = forms[k].a;
+  const auto covariances = joint_covariances(forms, details, frame_of(3), JointBasis(18, 0));
+  const Matrix6 inverse = forms[0].a.inverse(), link = inverse * scatter * inverse;
+  const double times = covariances[1]->trace() / link.trace();
+  EXPECT_GE(times, 1);
+  EXPECT_LT((*covariances[1] - times * link).norm(), 1e-7 * times * link.norm());
+}
+
+// With a motion of two scans together withheld: by Lagrange's equations, whose inverse's first
+// block answers pulls with steps.
+TEST(WithholdingSolver, SandwichesWhatIsNotWithheld) {
+  const Ring r = ring();
+  std::vector<JointDetail> details(4);
+  for (std::size_t k = 0; k < 4; ++k) {
+    RandomStream random(8, 0, k);
+    details[k].curvature = r.forms[k].a;
+    for (std::int64_t place = 0; place < 20; ++place)
+      details[k].pulls.push_back({{place, std::int64_t(k), 0}, random_row(random)});
+  }
+  JointBasis weak = JointBasis::Zero(24, 1);
+  weak(9, 0) = 0.6, weak(20, 0) = 0.8;
+  const JointFrame frame = frame_of(4);
+  const JointSystem system(r.forms, frame);
+  Eigen::MatrixXd saddle = Eigen::MatrixXd::Zero(19, 19);
+  saddle.topLeftCorner<18, 18>() = r.a;
+  saddle.topRightCorner<18, 1>() = weak.bottomRows<18>();
+  saddle.bottomLeftCorner<1, 18>() = weak.bottomRows<18>().transpose();
+  const Eigen::MatrixXd reply = saddle.inverse().topLeftCorner<18, 18>();
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(18, 18);
+  const std::vector<double> ones(4, 1);
+  for (const JointEntry& entry : system.scatter(system.pulls_by_place(details, ones)))
+    scatter(entry.row(), entry.col()) += entry.value();
+  const Eigen::MatrixXd expected = reply * scatter * reply;
+  const JointMatrix sparse = scatter.sparseView();
+  const WithholdingSolver solver(JointMatrix(r.a.sparseView()), system.reduced(weak));
+  const std::vector<Matrix6> blocks = solver.sandwich_blocks(sparse);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    EXPECT_LT((blocks[std::size_t(k)] - expected.block<6, 6>(6 * k, 6 * k)).norm(),
+              1e-7 * expected.norm());
+}
+
+}  // namespace
+}  // namespace scan::test
