@@ -118,6 +118,7 @@ std::vector<Vector6> JointSystem::twists(const Eigen::VectorXd& x) const {
 
 JointBasis JointSystem::expanded(const Eigen::MatrixXd& columns) const {
   JointBasis all = JointBasis::Zero(6 * Eigen::Index(row_.size()), columns.cols());
+  if (columns.cols() == 0) return all;  // a matrix without elements has no blocks to point to
   for (std::size_t i = 0; i < row_.size(); ++i)
     if (has(i)) all.middleRows<6>(6 * Eigen::Index(i)) = columns.middleRows<6>(row(i));
   return all;
@@ -125,6 +126,7 @@ JointBasis JointSystem::expanded(const Eigen::MatrixXd& columns) const {
 
 Eigen::MatrixXd JointSystem::reduced(const JointBasis& columns) const {
   Eigen::MatrixXd part(rows_, columns.cols());
+  if (columns.cols() == 0) return part;
   for (std::size_t i = 0; i < row_.size(); ++i)
     if (has(i)) part.middleRows<6>(row(i)) = columns.middleRows<6>(6 * Eigen::Index(i));
   return part;
