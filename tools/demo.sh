@@ -30,7 +30,9 @@ unpack() {
 for recipe in datasets/recipes/*.json; do
   name=$(basename "$recipe" .json)
   title "Simulated: $name"
-  "$scan" run "$recipe" "$out/$name" --resume
+  # What an earlier version left there is of another recipe (3) and is replaced.
+  "$scan" run "$recipe" "$out/$name" --resume ||
+    { [ $? = 3 ] && "$scan" run "$recipe" "$out/$name" --force; }
 done
 
 title "Real stereo pair: Motorcycle (Middlebury 2014, from Debian's python3-skimage)"
