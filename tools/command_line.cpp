@@ -42,7 +42,8 @@ class CliCommandLine : public CommandLine {
     app_.add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
   }
   void whole(std::string name, long& value, long least, long most, std::string help) override {
-    app_.add_option(name, value, help)->check(CLI::Range(least, most))->capture_default_str();
+    CLI::Option* option = app_.add_option(name, value, help)->check(CLI::Range(least, most));
+    if (least <= value && value <= most) option->capture_default_str();  // outside: none is given
   }
   void number(std::string name, double& value, double least, double most,
               std::string help) override {

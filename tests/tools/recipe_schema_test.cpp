@@ -89,6 +89,22 @@ TEST(RecipeSchema, HasNoKeyThatTheReaderDoesNotKnow) {
   EXPECT_GT(taken, tried / 2) << "of " << tried;
 }
 
+// A default that is told under a key of another unit would be another value.
+TEST(RecipeSchema, TellsTheDefaultsThatTheReaderFillsIn) {
+  for (const char* part : {"align", "reconstruct", "verify"}) {
+    json silent = small_recipe();
+    silent[part] = json::object();
+    json spoken = silent;
+    for (const auto& [key, property] : schema()["properties"][part]["properties"].items())
+      if (property.contains("default")) spoken[part][key] = property["default"];
+    ASSERT_GE(spoken[part].size(), 3u) << part;
+    const auto as_read = [](const json& recipe) {
+      return json(to_json(read_recipe(recipe, "recipe.json", LIBSCAN_SOURCE_DIR)));
+    };
+    EXPECT_EQ(as_read(spoken), as_read(silent)) << part;
+  }
+}
+
 TEST(RecipeSchema, RefusesWhatTheReaderRefuses) {
   const json good = small_recipe();
   ASSERT_EQ(broken(schema(), good, schema()), "");
