@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 
@@ -31,6 +32,10 @@ void parallel_chunks(std::size_t count, std::size_t chunk,
   const std::size_t chunks = (count + chunk - 1) / chunk;
   tbb::parallel_for(std::size_t{0}, chunks,
                     [&](std::size_t i) { body(i * chunk, std::min(count, (i + 1) * chunk)); });
+}
+
+void parallel_sort(std::span<std::uint64_t> keys) {
+  tbb::parallel_sort(keys.begin(), keys.end());
 }
 
 }  // namespace scan

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace scan {
@@ -37,6 +39,9 @@ void parallel_for(std::size_t count, Body&& body, std::size_t chunk = 64) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }
+
+// Ascending. Equal keys are one like the other, so the result is the same for any number of threads.
+void parallel_sort(std::span<std::uint64_t> keys);
 
 // Sum of chunk_sum(begin, end) over the same chunks, added in their order: the same bits for any
 // number of threads. T needs a copy and +=.

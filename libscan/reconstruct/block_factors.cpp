@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/reconstruct/block_factors.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {
@@ -15,13 +13,6 @@ using BlockMatrix = Eigen::Matrix<double, block_size, block_size>;
 
 constexpr std::size_t blocks_per_task = 4;
 constexpr std::int32_t shared = 0;
-
-// The integrals of an inner block's functions are not cut by the cube's walls.
-bool is_inner(const BlockLevel& level, std::size_t block) {
-  const auto [low, high] =
-      std::minmax_element(level.blocks[block].begin(), level.blocks[block].end());
-  return *low >= 1 && block_width * (*high + 1) <= level.cells();
-}
 
 BlockMatrix bending_matrix(const BlockLevel& level, const BendingStencil& bending,
                            std::size_t block) {
@@ -94,12 +85,12 @@ BlockFactors::BlockFactors(const BlockLevel& level, const BendingStencil& bendin
     : factor_of_(level.active, shared) {
   std::vector<char> is_own(level.active);
   parallel_for(level.active, [&](std::size_t b) {
-    is_own[b] = !is_inner(level, b) || has_samples(level, term, b);
+    is_own[b] = !level.is_inner(b) || has_samples(level, term, b);
   });
   std::vector<std::size_t> block_of(1, level.active);
   BlockMatrix of_inner = BlockMatrix::Identity();
   for (std::size_t b = 0; b < level.active; ++b) {
-    if (is_inner(level, b) && block_of.front() == level.active) {
+    if (level.is_inner(b) && block_of.front() == level.active) {
       block_of.front() = b;
       of_inner = bending_matrix(level, bending, b);
     }
@@ -114,41 +105,23 @@ BlockFactors::BlockFactors(const BlockLevel& level, const BendingStencil& bendin
         const std::size_t b = block_of[k];
         BlockMatrix matrix = of_inner;
         if (k != shared) {
-          if (!is_inner(level, b)) matrix = bending_matrix(level, bending, b);
+          if (!level.is_inner(b)) matrix = bending_matrix(level, bending, b);
           add_samples(level, term, b, matrix);
         }
-        const Eigen::LLT<Eigen::Ref<BlockMatrix>> factor(matrix);
-        if (factor.info() != Eigen::Success)
-          throw Error(Trouble::computation, "ssd: the matrix of a block is not positive definite",
-                      "the weights differ too much");
-        factors_[k] = packed(matrix);
+        factors_[k] = packed_cholesky<block_size>(matrix);
       },
       blocks_per_task);
 }
 
-BlockFactors::Factor BlockFactors::packed(const BlockMatrix& factor) {
-  Factor rows;
-  float* to = rows.data();
-  for (Eigen::Index i = 0; i < block_size; ++i) {
-    for (Eigen::Index j = 0; j < i; ++j) *to++ = static_cast<float>(factor(i, j));
-    *to++ = static_cast<float>(1 / factor(i, i));
-  }
-  return rows;
+template <class Real>
+void BlockFactors::solve(std::size_t block, const Real* r, Real* z) const {
+  using Values = Eigen::Matrix<Real, block_size, 1>;
+  Eigen::Matrix<float, block_size, 1> x = Eigen::Map<const Values>(r).template cast<float>();
+  solve_packed<block_size>(factors_[static_cast<std::size_t>(factor_of_[block])], x);
+  Eigen::Map<Values>(z, block_size) = x.template cast<Real>();
 }
 
-void BlockFactors::solve(std::size_t block, const double* r, double* z) const {
-  using Row = Eigen::Map<const Eigen::VectorXf>;
-  Eigen::Matrix<float, block_size, 1> x =
-      Eigen::Map<const Eigen::Matrix<double, block_size, 1>>(r).cast<float>();
-  const float* row = factors_[static_cast<std::size_t>(factor_of_[block])].data();
-  for (Eigen::Index i = 0; i < block_size; row += ++i)
-    x[i] = (x[i] - Row(row, i).dot(x.head(i))) * row[i];
-  for (Eigen::Index i = block_size; i-- > 0;) {
-    row -= i + 1;
-    x[i] *= row[i];
-    x.head(i) -= x[i] * Row(row, i);
-  }
-  for (Eigen::Index i = 0; i < block_size; ++i) z[i] = x[i];
-}
+template void BlockFactors::solve(std::size_t, const float*, float*) const;
+template void BlockFactors::solve(std::size_t, const double*, double*) const;
 
 }  // namespace scan

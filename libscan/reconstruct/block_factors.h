@@ -4,6 +4,7 @@
 #pragma once
 
 #include "libscan/reconstruct/cell_matrices.h"
+#include "libscan/reconstruct/packed_cholesky.h"
 
 namespace scan {
 
@@ -15,15 +16,12 @@ class BlockFactors {
   // Of the active blocks. `term`: the samples of this level and of all finer ones.
   BlockFactors(const BlockLevel& level, const BendingStencil& bending, const CellMatrices& term);
   // z = (matrix of the block)^-1 r, to the precision of float.
-  void solve(std::size_t block, const double* r, double* z) const;
+  template <class Real>
+  void solve(std::size_t block, const Real* r, Real* z) const;
 
  private:
-  // Rows of the Cholesky factor's lower half, one after the other; inverses on the diagonal.
-  using Factor = std::array<float, block_size*(block_size + 1) / 2>;
-  static Factor packed(const Eigen::Matrix<double, block_size, block_size>& factor);
-
   std::vector<std::int32_t> factor_of_;  // inner blocks without samples share one
-  std::vector<Factor> factors_;
+  std::vector<PackedCholesky<block_size>> factors_;
 };
 
 }  // namespace scan

@@ -12,13 +12,15 @@ namespace scan {
 // the cells i-2, i-1 and i, so that the functions of cell k are k, k+1 and k+2.
 
 // Values and slopes (per cell width) of the three functions of a cell at `t` in [0, 1].
+template <class Real>
 struct SplineWeights {
-  std::array<double, 3> value;
-  std::array<double, 3> slope;
+  std::array<Real, 3> value;
+  std::array<Real, 3> slope;
 };
-inline SplineWeights spline_weights(double t) {
-  const double s = 1 - t;
-  return {{s * s / 2, 0.5 + t * s, t * t / 2}, {-s, 1 - 2 * t, t}};
+template <class Real>
+SplineWeights<Real> spline_weights(Real t) {
+  const Real s = 1 - t;
+  return {{s * s / 2, Real{0.5} + t * s, t * t / 2}, {-s, 1 - 2 * t, t}};
 }
 
 // Integrals over the row of the products of function i with the functions i-2 ... i+2: of the

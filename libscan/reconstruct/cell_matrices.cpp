@@ -24,7 +24,7 @@ struct PairProducts {
   std::array<double, axis_pairs> value, slope;
 };
 
-PairProducts pair_products(const SplineWeights& w) {
+PairProducts pair_products(const SplineWeights<double>& w) {
   PairProducts p;
   for (int a = 0; a < 3; ++a)
     for (int b = a; b < 3; ++b) {
@@ -34,7 +34,8 @@ PairProducts pair_products(const SplineWeights& w) {
   return p;
 }
 
-void add_sample(const CellWeights& w, double value_factor, double slope_factor, CellMatrix& sum) {
+void add_sample(const CellWeights<double>& w, double value_factor, double slope_factor,
+                CellMatrix& sum) {
   const PairProducts x = pair_products(w.x), y = pair_products(w.y), z = pair_products(w.z);
   double* to = sum.data();
   for (int c = 0; c < axis_pairs; ++c)
@@ -107,21 +108,6 @@ std::vector<Child> children_of_cells(const OctreeGrid& grid, std::size_t l,
 }
 
 }  // namespace
-
-std::vector<CellSample> in_cells(const BlockLevel& level, const Samples& samples,
-                                 std::span<const std::uint32_t> chosen) {
-  std::vector<CellSample> placed(chosen.size());
-  parallel_for(chosen.size(), [&](std::size_t i) {
-    const BlockPlace cell = cell_at(samples.points[chosen[i]], level.cells());
-    const std::int32_t block = level.find({cell[0] / 4, cell[1] / 4, cell[2] / 4});
-    const int slot = slot_in_block(cell[0] % 4, cell[1] % 4, cell[2] % 4);
-    placed[i] = {static_cast<std::uint32_t>(block * block_size + slot), chosen[i]};
-  });
-  std::sort(placed.begin(), placed.end(), [](const CellSample& a, const CellSample& b) {
-    return std::tie(a.cell, a.sample) < std::tie(b.cell, b.sample);
-  });
-  return placed;
-}
 
 CellMatrices cell_matrices(const BlockLevel& level, const Samples& samples,
                            const SampleWeights& weights, std::span<const CellSample> placed) {

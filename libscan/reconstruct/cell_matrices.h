@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "libscan/reconstruct/cell_samples.h"
 #include "libscan/reconstruct/sample_term.h"
 
 namespace scan {
@@ -22,19 +23,10 @@ inline double entry(const CellMatrix& matrix, int i, int j) {
       axis_pairs * (pair_of[i / 3 % 3][j / 3 % 3] + axis_pairs * pair_of[i / 9][j / 9]))];
 }
 
-// Cells are named block_size * block + slot_in_block.
-struct CellSample {
-  std::uint32_t cell, sample;
-};
-
 struct CellMatrices {
   std::vector<std::uint32_t> cells;  // ascending
   std::vector<CellMatrix> matrices;
 };
-
-// The chosen samples in the order of the level's cells.
-std::vector<CellSample> in_cells(const BlockLevel& level, const Samples& samples,
-                                 std::span<const std::uint32_t> chosen);
 
 CellMatrices cell_matrices(const BlockLevel& level, const Samples& samples,
                            const SampleWeights& weights, std::span<const CellSample> placed);

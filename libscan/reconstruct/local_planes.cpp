@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libscan/core/parallel.h"
+#include "libscan/search/batch.h"
 #include "libscan/search/kd_tree.h"
 
 namespace scan {
@@ -38,17 +39,14 @@ LocalPlane fit(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& x
   return plane;
 }
 
-}  // namespace
-
-LocalPlanes local_planes(std::span<const Eigen::Vector3d> points, std::size_t neighbours) {
-  LocalPlanes all;
-  all.neighbours = std::min(neighbours, points.empty() ? 0 : points.size() - 1);
-  all.around.resize(points.size() * all.neighbours);
-  all.planes.resize(points.size());
+// Neighbours and planes of the points that are `chosen`, in this order.
+void fit_planes(std::span<const Eigen::Vector3d> points, std::span<const std::uint32_t> chosen,
+                LocalPlanes& all) {
+  if (chosen.empty()) return;
   const KdTree tree(points);
-  parallel_chunks(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(chosen.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<Neighbour> found;
-    for (std::size_t i = begin; i < end; ++i) {
+    for (const std::uint32_t i : chosen.subspan(begin, end - begin)) {
       tree.k_nearest(points[i], all.neighbours + 1, found);
       const std::span<std::uint32_t> around(all.around.data() + i * all.neighbours, all.neighbours);
       std::size_t count = 0;
@@ -57,7 +55,42 @@ LocalPlanes local_planes(std::span<const Eigen::Vector3d> points, std::size_t ne
       all.planes[i] = fit(points, points[i], around);
     }
   });
+}
+
+LocalPlanes unfitted(std::size_t points, std::size_t neighbours) {
+  LocalPlanes all;
+  all.neighbours = std::min(neighbours, points == 0 ? 0 : points - 1);
+  all.around.resize(points * all.neighbours);
+  all.planes.resize(points);
   return all;
+}
+
+}  // namespace
+
+LocalPlanes local_planes(std::span<const Eigen::Vector3d> points, std::size_t neighbours) {
+  LocalPlanes all = unfitted(points.size(), neighbours);
+  fit_planes(points, curve_order(points), all);
+  return all;
+}
+
+LocalPlanes remaining_planes(const LocalPlanes& all, std::span<const Eigen::Vector3d> points,
+                             std::span<const std::uint32_t> kept) {
+  constexpr std::uint32_t gone = 0xffffffffu;
+  LocalPlanes left = unfitted(kept.size(), all.neighbours);
+  if (left.neighbours < all.neighbours) return local_planes(points, all.neighbours);
+  std::vector<std::uint32_t> index_of(all.planes.size(), gone), bereft;
+  for (std::uint32_t i = 0; i < kept.size(); ++i) index_of[kept[i]] = i;
+  for (std::uint32_t i = 0; i < kept.size(); ++i) {
+    const auto around = std::span(all.around).subspan(kept[i] * all.neighbours, all.neighbours);
+    const auto to = left.around.begin() + static_cast<std::ptrdiff_t>(i * all.neighbours);
+    std::transform(around.begin(), around.end(), to, [&](std::uint32_t n) { return index_of[n]; });
+    left.planes[i] = all.planes[kept[i]];
+    if (std::find(to, to + static_cast<std::ptrdiff_t>(all.neighbours), gone) !=
+        to + static_cast<std::ptrdiff_t>(all.neighbours))
+      bereft.push_back(i);
+  }
+  fit_planes(points, bereft, left);
+  return left;
 }
 
 }  // namespace scan

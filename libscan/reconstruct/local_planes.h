@@ -27,4 +27,9 @@ struct LocalPlanes {
 // Over min(neighbours, all others) points; points must be finite.
 LocalPlanes local_planes(std::span<const Eigen::Vector3d> points, std::size_t neighbours);
 
+// The same for `points`, those of `all` that are `kept` (ascending): only points that have lost a
+// neighbour are fitted anew.
+LocalPlanes remaining_planes(const LocalPlanes& all, std::span<const Eigen::Vector3d> points,
+                             std::span<const std::uint32_t> kept);
+
 }  // namespace scan

@@ -32,7 +32,7 @@ int blocks_per_axis(int depth) {
 }
 
 void sort_unique(std::vector<std::uint64_t>& keys) {
-  std::sort(keys.begin(), keys.end());
+  parallel_sort(keys);
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
@@ -50,18 +50,19 @@ void add_range(BlockPlace low, BlockPlace high, int depth, std::vector<std::uint
 
 std::vector<std::uint64_t> keys_around_points(std::span<const Eigen::Vector3d> points,
                                               std::span<const int> depths, int depth) {
-  std::vector<std::uint64_t> keys;
+  // The functions cell - 1 ... cell + 3 lie in two blocks along each axis. Many points share them.
+  std::vector<std::uint64_t> upper, keys;
   for (std::size_t p = 0; p < points.size(); ++p) {
     if (depths[p] < depth) continue;
-    BlockPlace low, high;
-    for (int a = 0; a < 3; ++a) {
-      const int cell = cell_of(points[p][a], 1 << depth);
-      low[a] = std::max(cell - 1, 0) / block_width;
-      high[a] = (cell + 3) / block_width;
-    }
-    add_range(low, high, depth, keys);
-    // Many points share their blocks: keep the list short as it grows.
-    if (keys.size() > 4000000 && keys.size() == keys.capacity()) sort_unique(keys);
+    BlockPlace place;
+    for (int a = 0; a < 3; ++a) place[a] = (cell_of(points[p][a], 1 << depth) + 3) / block_width;
+    const std::uint64_t key = key_of(place);
+    if (upper.empty() || key != upper.back()) upper.push_back(key);
+  }
+  sort_unique(upper);
+  for (const std::uint64_t key : upper) {
+    const BlockPlace p = place_of(key);
+    add_range({p[0] - 1, p[1] - 1, p[2] - 1}, p, depth, keys);
   }
   sort_unique(keys);
   return keys;
@@ -199,6 +200,11 @@ bool BlockLevel::any_active(const BlockPlace& low, int count) const {
       for (int x = block(0, 0); x <= block(0, 1); ++x)
         if (find_active({x, y, z}) >= 0) return true;
   return false;
+}
+
+bool BlockLevel::is_inner(std::size_t block) const {
+  const auto [low, high] = std::minmax_element(blocks[block].begin(), blocks[block].end());
+  return *low >= 1 && block_width * (*high + 1) <= cells();
 }
 
 std::int32_t BlockLevel::find(const BlockPlace& place) const {

@@ -57,6 +57,8 @@ struct BlockLevel {
   std::int32_t find_active(const BlockPlace& place) const;  // -1: none or halo
   // Whether any of the functions `low` ... `low + count - 1` (per axis, count <= 5) is active.
   bool any_active(const BlockPlace& low, int count) const;
+  // Whether the integrals of the block's functions are not cut by the cube's walls.
+  bool is_inner(std::size_t block) const;
 };
 
 inline constexpr int coarsest_depth = 3;

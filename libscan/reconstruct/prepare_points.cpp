@@ -47,7 +47,7 @@ LocalPlanes leave_out_outliers(PreparedPoints& prepared) {
     if (left_out == 0 || kept.size() < least_points) break;
     prepared.outlying_points += left_out;
     keep(prepared, kept);
-    planes = local_planes(prepared.cloud.points, neighbours);
+    planes = remaining_planes(planes, prepared.cloud.points, kept);
   }
   return planes;
 }

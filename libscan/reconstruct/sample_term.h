@@ -3,6 +3,7 @@
 // The samples' part of the energy on one level: sum of v (f - f0)^2 + g |grad f - n|^2.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -17,8 +18,10 @@ struct SampleWeights {
   std::vector<double> gradient;
 };
 
-// Samples are kept by the block of their cell; each block's sums go to a buffer of its own, and the
-// blocks around fetch them from there, so nothing depends on the order of threads.
+// For float and double. Samples are kept by the block of their cell. A block's sums reach it and
+// its upper neighbours; blocks whose places are even or odd alike on all axes share none, and such
+// groups take turns: nothing depends on the order of threads.
+template <class Real>
 class SampleTerm {
  public:
   SampleTerm() = default;
@@ -28,37 +31,42 @@ class SampleTerm {
   void set_weights(const SampleWeights& weights);
 
   // sum += (matrix of the term) u, on all blocks; `u` holds all blocks.
-  void add_product(const BlockLevel& level, const std::vector<double>& u,
-                   std::vector<double>& sum) const;
+  void add_product(const BlockLevel& level, const std::vector<Real>& u,
+                   std::vector<Real>& sum) const;
   // sum += diagonal of that matrix.
-  void add_diagonal(const BlockLevel& level, std::vector<double>& sum) const;
+  void add_diagonal(const BlockLevel& level, std::vector<Real>& sum) const;
   // sum += v f0 B + g n . grad B.
-  void add_right_side(const BlockLevel& level, std::vector<double>& sum) const;
+  void add_right_side(const BlockLevel& level, std::vector<Real>& sum) const;
   // Of each sample on this level: f / |grad f|.
-  void write_residuals(const BlockLevel& level, const std::vector<double>& u,
+  void write_residuals(const BlockLevel& level, const std::vector<Real>& u,
                        std::vector<double>& residuals) const;
   // Aims at f = sigma^2 / 2 times the Laplacian of u at each sample.
-  void aim_at_scattered_mean(const BlockLevel& level, const std::vector<double>& u,
+  void aim_at_scattered_mean(const BlockLevel& level, const std::vector<Real>& u,
                              std::span<const double> sigma);
   // The term's own value for u.
-  double energy(const BlockLevel& level, const std::vector<double>& u) const;
+  double energy(const BlockLevel& level, const std::vector<Real>& u) const;
 
  private:
+  using Vector = Eigen::Matrix<Real, 3, 1>;
   struct Placed {
-    Eigen::Vector3d in_cell;  // coordinates in the cell, [0, 1]
-    Eigen::Vector3d normal;
-    double value_target;
-    double value_weight, gradient_weight;
+    Vector in_cell;  // coordinates in the cell, [0, 1]
+    Vector normal;
+    Real value_target;
+    Real value_weight, gradient_weight;
     std::uint32_t sample;
     int corner;  // of the cell's functions in the block's cube
   };
+  std::span<const Placed> in_bucket(std::size_t bucket) const {
+    return std::span(placed_).subspan(bucket_begin_[bucket],
+                                      bucket_begin_[bucket + 1] - bucket_begin_[bucket]);
+  }
   template <class Accumulate>
-  void scatter(const BlockLevel& level, std::vector<double>& sum, Accumulate&& accumulate) const;
+  void scatter(const BlockLevel& level, std::vector<Real>& sum, Accumulate&& accumulate) const;
 
-  double cells_ = 0;
-  std::vector<std::uint32_t> bucket_block_;  // per bucket: its block
-  std::vector<std::uint32_t> bucket_begin_;  // per bucket, and the end
-  std::vector<std::int32_t> bucket_of_block_;
+  Real cells_ = 0;
+  std::vector<std::uint32_t> bucket_block_;               // per bucket: its block
+  std::vector<std::uint32_t> bucket_begin_;               // per bucket, and the end
+  std::array<std::vector<std::uint32_t>, 8> buckets_of_;  // by evenness along the axes
   std::vector<Placed> placed_;
 };
 

@@ -7,6 +7,7 @@
 // is all that the level's integrals and samples need.
 #pragma once
 
+#include <tuple>
 #include <vector>
 
 #include "libscan/reconstruct/bending_kernel.h"
@@ -17,31 +18,39 @@ namespace scan {
 
 // One array per level, block_size numbers per block: of all active blocks for unknowns, of all
 // blocks for sums.
-using LevelArrays = std::vector<std::vector<double>>;
+template <class Real>
+using LevelArraysOf = std::vector<std::vector<Real>>;
+using LevelArrays = LevelArraysOf<double>;
 
-LevelArrays active_arrays(const OctreeGrid& grid, double value = 0);
+// Zeros of all active blocks. This and what follows is there for float and double.
+template <class Real = double>
+LevelArraysOf<Real> active_arrays(const OctreeGrid& grid);
 
 // Writes P coarse over `fine` (all blocks of level `l`): the same function in finer splines.
-void prolong(const OctreeGrid& grid, std::size_t l, const std::vector<double>& coarse,
-             std::vector<double>& fine);
+template <class Real>
+void prolong(const OctreeGrid& grid, std::size_t l, const std::vector<Real>& coarse,
+             std::vector<Real>& fine);
 
 // Adds P^T fine to `coarse` (all blocks of level `l`; `fine` of level l+1).
-void restrict_add(const OctreeGrid& grid, std::size_t l, const std::vector<double>& fine,
-                  std::vector<double>& coarse);
+template <class Real>
+void restrict_add(const OctreeGrid& grid, std::size_t l, const std::vector<Real>& fine,
+                  std::vector<Real>& coarse);
 
 // Copies the functions that act on a block's cells, 4*place ... 4*place+5 per axis, into a cube. A
 // block that is missing, or that lies behind the end of `values`, counts as zero.
 inline constexpr int block_cell_functions = block_width + 2;
-void gather_cell_functions(const BlockLevel& level, const std::vector<double>& values,
-                           std::size_t block, double* cube);
+template <class Real>
+void gather_cell_functions(const BlockLevel& level, const std::vector<Real>& values,
+                           std::size_t block, Real* cube);
 
-// integral of |D^2 f|^2 as a matrix of one level, for blocks `begin` ... `end`:
-// sum += factor * S values. `values` may hold active blocks only.
+// integral of |D^2 f|^2 as a matrix S of one level: sum += S values on a block. `values` may hold
+// active blocks only.
 class BendingStencil {
  public:
   explicit BendingStencil(int depth);
-  void add(const BlockLevel& level, const std::vector<double>& values, std::size_t block,
-           double factor, double* sum) const;
+  template <class Real>
+  void add(const BlockLevel& level, const std::vector<Real>& values, std::size_t block,
+           Real* sum) const;
   double diagonal(const BlockPlace& place, int slot) const { return entry(place, slot, 2, 2, 2); }
   // Calls visit(function, entry) along the row of S of a function of an active block.
   template <class Visit>
@@ -53,7 +62,8 @@ class BendingStencil {
 
   double inverse_cell_;
   std::vector<StencilRow> rows_;
-  std::vector<AxisStencil> axis_of_block_;
+  // Of each block along an axis.
+  std::tuple<std::vector<AxisStencil<float>>, std::vector<AxisStencil<double>>> axes_;
 };
 
 template <class Visit>

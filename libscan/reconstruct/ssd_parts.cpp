@@ -18,9 +18,10 @@ constexpr std::size_t most_thinned = 10000, least_step = 10;
 constexpr int most_split = 5;
 constexpr double least_blended_cells = 4;
 constexpr double gib = 1073741824.0;
-// Bytes. Of a fit: the coarsest level's matrix, dense over 10^3 functions, and its factor;
-// unknowns, work vectors, tables and factors by block; terms by sample.
-constexpr double fit_always = 2 * 1e6 * sizeof(double), fit_per_block = 5000, fit_per_sample = 200;
+// Bytes. Of a fit: the coarsest level's matrix, dense over 10^3 functions, its factor, and about as
+// much for the cells and blocks of the levels next to it; unknowns, work vectors, tables and
+// factors by block; terms by sample.
+constexpr double fit_always = 3 * 1e6 * sizeof(double), fit_per_block = 1300, fit_per_sample = 200;
 // Of each sample to the end: itself, its depth, length and parts, and a search tree of all.
 constexpr double stay_per_sample = 100;
 // While the samples are made.

@@ -20,11 +20,14 @@ struct SsdSolution {
 };
 
 // Preconditioner: additive over the levels (Bramble, Pasciak and Xu 1990; Griebel 1994), by the
-// diagonal on the finest, block by block on those below, exact on the coarsest.
+// diagonal on the finest, by octets on the next, block by block on those below, exact on the
+// coarsest. All arrays but the solution are of type Real, float or double; sums over all of them
+// are in double either way.
+template <class Real>
 class SsdSolver {
  public:
   // Keeps references to system and grid.
-  SsdSolver(SsdSystem& system, const OctreeGrid& grid);
+  SsdSolver(SsdSystem<Real>& system, const OctreeGrid& grid);
   ~SsdSolver();
   // To be called first, and when the system's levels or weights have changed.
   void refresh();
@@ -40,7 +43,8 @@ class SsdSolver {
 };
 
 // From the coarsest level to all levels.
-SsdSolution solve(SsdSystem& system, const OctreeGrid& grid, double relative_residual,
+template <class Real>
+SsdSolution solve(SsdSystem<Real>& system, const OctreeGrid& grid, double relative_residual,
                   int max_iterations);
 
 }  // namespace scan

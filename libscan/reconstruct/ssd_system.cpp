@@ -8,8 +8,14 @@
 #include "libscan/core/parallel.h"
 
 namespace scan {
+namespace {
 
-SsdSystem::SsdSystem(const OctreeGrid& grid, const Samples& samples, SampleWeights weights)
+constexpr std::size_t chunk = 4096;
+
+}  // namespace
+
+template <class Real>
+SsdSystem<Real>::SsdSystem(const OctreeGrid& grid, const Samples& samples, SampleWeights weights)
     : grid_(grid),
       samples_(samples),
       depths_(depths_seen(grid, samples.points)),
@@ -17,97 +23,119 @@ SsdSystem::SsdSystem(const OctreeGrid& grid, const Samples& samples, SampleWeigh
       terms_(grid.levels.size()) {
   for (const BlockLevel& level : grid.levels) {
     bending_.emplace_back(level.depth);
-    sums_.emplace_back(level.blocks.size() * block_size, 0.0);
-    residuals_.emplace_back(level.blocks.size() * block_size, 0.0);
+    sums_.emplace_back(level.blocks.size() * block_size);
+    residuals_.emplace_back(level.blocks.size() * block_size);
   }
   use_levels(grid.levels.size() - 1);
 }
 
-void SsdSystem::set_weights(SampleWeights weights) {
+template <class Real>
+void SsdSystem<Real>::set_weights(SampleWeights weights) {
   weights_ = std::move(weights);
   for (std::size_t l = 0; l <= finest_; ++l) terms_[l].set_weights(weights_);
 }
 
-void SsdSystem::use_levels(std::size_t finest) {
+template <class Real>
+void SsdSystem<Real>::use_levels(std::size_t finest) {
   finest_ = finest;
   std::vector<std::vector<std::uint32_t>> chosen(finest + 1);
   for (std::uint32_t i = 0; i < depths_.size(); ++i)
     chosen[std::min<std::size_t>(depths_[i] - coarsest_depth, finest)].push_back(i);
   for (std::size_t l = 0; l <= finest; ++l)
-    terms_[l] = SampleTerm(grid_.levels[l], samples_, weights_, chosen[l]);
-  if (finest > 0) {
-    std::vector<std::uint32_t>& last = chosen[finest - 1];
-    last.insert(last.end(), chosen[finest].begin(), chosen[finest].end());
+    terms_[l] = SampleTerm<Real>(grid_.levels[l], samples_, weights_, chosen[l]);
+  const auto join_to = [&](std::size_t l) {
+    chosen[l].insert(chosen[l].end(), chosen[l + 1].begin(), chosen[l + 1].end());
+    chosen[l + 1] = {};
+  };
+  in_octet_cells_ = {};
+  if (finest > 0) join_to(finest - 1);
+  if (finest > 1) {
+    in_octet_cells_ = in_cells(grid_.levels[finest - 1], samples_, chosen[finest - 1]);
+    join_to(finest - 2);
   }
   in_cells_.clear();
-  for (std::size_t l = 0; l < std::max<std::size_t>(finest, 1); ++l)
+  for (std::size_t l = 0; l < levels_of_blocks(); ++l)
     in_cells_.push_back(in_cells(grid_.levels[l], samples_, chosen[l]));
 }
 
-void SsdSystem::accumulate_coarse_to_fine(const LevelArrays& x) {
+template <class Real>
+template <class Coefficients>
+void SsdSystem<Real>::accumulate_coarse_to_fine(const Coefficients& x) {
   for (std::size_t l = 0; l <= finest_; ++l) {
     if (l > 0)
       prolong(grid_, l, sums_[l - 1], sums_[l]);
     else
-      std::fill(sums_[0].begin(), sums_[0].end(), 0.0);
-    for (std::size_t i = 0; i < x[l].size(); ++i) sums_[l][i] += x[l][i];
+      std::fill(sums_[0].begin(), sums_[0].end(), Real{0});
+    parallel_for(
+        x[l].size(), [&](std::size_t i) { sums_[l][i] += static_cast<Real>(x[l][i]); }, chunk);
   }
 }
 
-void SsdSystem::multiply(const LevelArrays& x, LevelArrays& y, bool with_samples) {
+template <class Real>
+void SsdSystem<Real>::multiply(const Arrays& x, Arrays& y, bool with_samples) {
   accumulate_coarse_to_fine(x);
   for (std::size_t l = finest_ + 1; l-- > 0;) {
     const BlockLevel& level = grid_.levels[l];
-    std::vector<double>& rest = residuals_[l];
-    std::fill(rest.begin(), rest.end(), 0.0);
+    std::vector<Real>& rest = residuals_[l];
+    std::fill(rest.begin(), rest.end(), Real{0});
     if (l < finest_) restrict_add(grid_, l, residuals_[l + 1], rest);
     if (with_samples) terms_[l].add_product(level, sums_[l], rest);
     parallel_for(level.active, [&](std::size_t b) {
       std::copy_n(rest.data() + b * block_size, block_size, y[l].data() + b * block_size);
-      bending_[l].add(level, sums_[l], b, 1, y[l].data() + b * block_size);
+      bending_[l].add(level, sums_[l], b, y[l].data() + b * block_size);
     });
     // Coarser levels have seen their own part of `sums_`: they lack what this level adds.
     if (l > 0)
       parallel_for(level.blocks.size(), [&](std::size_t b) {
-        bending_[l].add(level, x[l], b, 1, rest.data() + b * block_size);
+        bending_[l].add(level, x[l], b, rest.data() + b * block_size);
       });
   }
 }
 
-LevelArrays SsdSystem::right_side() {
-  LevelArrays b = active_arrays(grid_);
+template <class Real>
+void SsdSystem<Real>::right_side(Arrays& b) {
   for (std::size_t l = finest_ + 1; l-- > 0;) {
-    std::vector<double>& rest = residuals_[l];
-    std::fill(rest.begin(), rest.end(), 0.0);
+    std::vector<Real>& rest = residuals_[l];
+    std::fill(rest.begin(), rest.end(), Real{0});
     if (l < finest_) restrict_add(grid_, l, residuals_[l + 1], rest);
     terms_[l].add_right_side(grid_.levels[l], rest);
     std::copy_n(rest.begin(), b[l].size(), b[l].begin());
   }
-  return b;
 }
 
-std::vector<double> SsdSystem::finest_diagonal() const {
+template <class Real>
+std::vector<Real> SsdSystem<Real>::finest_diagonal() {
   const BlockLevel& level = grid_.levels[finest_];
-  std::vector<double> diagonal(level.blocks.size() * block_size, 0.0);
-  terms_[finest_].add_diagonal(level, diagonal);
-  diagonal.resize(level.active * block_size);
+  std::vector<Real>& of_samples = residuals_[finest_];
+  std::fill(of_samples.begin(), of_samples.end(), Real{0});
+  terms_[finest_].add_diagonal(level, of_samples);
+  std::vector<Real> diagonal(level.active * block_size);
   parallel_for(level.active, [&](std::size_t b) {
     for (int slot = 0; slot < block_size; ++slot) {
-      double& entry = diagonal[b * block_size + static_cast<std::size_t>(slot)];
-      entry += bending_[finest_].diagonal(level.blocks[b], slot);
-      if (!(entry > 0)) entry = 1;
+      const std::size_t i = b * block_size + static_cast<std::size_t>(slot);
+      diagonal[i] =
+          of_samples[i] + static_cast<Real>(bending_[finest_].diagonal(level.blocks[b], slot));
+      if (!(diagonal[i] > 0)) diagonal[i] = 1;
     }
   });
   return diagonal;
 }
 
-CellMatrices SsdSystem::sample_matrices(std::size_t l, const CellMatrices& finer) const {
+template <class Real>
+OctetFactors SsdSystem<Real>::octet_factors() const {
+  return OctetFactors(grid_.levels[finest_ - 1], bending_[finest_ - 1], samples_, weights_,
+                      in_octet_cells_);
+}
+
+template <class Real>
+CellMatrices SsdSystem<Real>::sample_matrices(std::size_t l, const CellMatrices& finer) const {
   CellMatrices own = cell_matrices(grid_.levels[l], samples_, weights_, in_cells_[l]);
   if (l + 1 == in_cells_.size()) return own;
   return coarsened(grid_, l, finer, own);
 }
 
-std::vector<std::uint32_t> SsdSystem::coarsest_functions() const {
+template <class Real>
+std::vector<std::uint32_t> SsdSystem<Real>::coarsest_functions() const {
   const BlockLevel& level = grid_.levels.front();
   std::vector<std::uint32_t> functions;
   for (std::uint32_t i = 0; i < level.active * block_size; ++i) {
@@ -120,7 +148,8 @@ std::vector<std::uint32_t> SsdSystem::coarsest_functions() const {
   return functions;
 }
 
-Eigen::MatrixXd SsdSystem::coarsest_matrix(const CellMatrices& samples) const {
+template <class Real>
+Eigen::MatrixXd SsdSystem<Real>::coarsest_matrix(const CellMatrices& samples) const {
   const BlockLevel& level = grid_.levels.front();
   const std::vector<std::uint32_t> functions = coarsest_functions();
   const std::size_t size = functions.size();
@@ -136,7 +165,8 @@ Eigen::MatrixXd SsdSystem::coarsest_matrix(const CellMatrices& samples) const {
   return matrix;
 }
 
-std::vector<double> SsdSystem::residuals(const LevelArrays& x) {
+template <class Real>
+std::vector<double> SsdSystem<Real>::residuals(const LevelArrays& x) {
   accumulate_coarse_to_fine(x);
   std::vector<double> found(depths_.size(), 0.0);
   for (std::size_t l = 0; l <= finest_; ++l)
@@ -144,14 +174,16 @@ std::vector<double> SsdSystem::residuals(const LevelArrays& x) {
   return found;
 }
 
-void SsdSystem::aim_at_scattered_mean(const LevelArrays& x) {
+template <class Real>
+void SsdSystem<Real>::aim_at_scattered_mean(const LevelArrays& x) {
   accumulate_coarse_to_fine(x);
   for (std::size_t l = 0; l <= finest_; ++l)
     terms_[l].aim_at_scattered_mean(grid_.levels[l], sums_[l], samples_.sigma);
 }
 
-double SsdSystem::energy(const LevelArrays& x) {
-  LevelArrays product = active_arrays(grid_);
+template <class Real>
+double SsdSystem<Real>::energy(const Arrays& x) {
+  Arrays product = active_arrays<Real>(grid_);
   multiply(x, product, false);  // leaves the sums behind
   double total = 0;
   for (std::size_t l = 0; l <= finest_; ++l) {
@@ -160,5 +192,8 @@ double SsdSystem::energy(const LevelArrays& x) {
   }
   return total;
 }
+
+template class SsdSystem<float>;
+template class SsdSystem<double>;
 
 }  // namespace scan

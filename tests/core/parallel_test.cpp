@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -72,6 +73,15 @@ TEST(ParallelFor, HandsExceptionsToTheCaller) {
       EXPECT_EQ(error.trouble(), Trouble::computation);
     }
   }
+}
+
+TEST(ParallelSort, Sorts) {
+  std::vector<std::uint64_t> keys(100000);
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = i * 2654435761u % 77777;  // some twice
+  std::vector<std::uint64_t> expected = keys;
+  std::sort(expected.begin(), expected.end());
+  parallel_sort(keys);
+  EXPECT_EQ(keys, expected);
 }
 
 TEST(ThreadLimit, HoldsWhileItLives) {

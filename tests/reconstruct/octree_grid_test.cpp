@@ -47,6 +47,28 @@ TEST(OctreeGrid, HoldsTheParentsOfItsActiveBlocks) {
     }
 }
 
+// One point to a grid: the functions of its cell and of the cells around it, and no block besides.
+TEST(OctreeGrid, ActivatesWhatActsAroundAPoint) {
+  for (const double u : {0.001, 0.502, 0.51, 0.52, 0.526, 0.53, 0.999}) {
+    const std::vector<Eigen::Vector3d> point = {{u, 0.3, 1 - u}};
+    const BlockLevel level = make_octree_grid(point, std::vector<int>{7}, 3).levels.back();
+    BlockPlace low, high;
+    for (int a = 0; a < 3; ++a) {
+      const int cell = cell_of(point[0][a], 128);
+      low[a] = std::max(cell - 1, 0) / block_width;
+      high[a] = std::min(cell + 3, 129) / block_width;
+    }
+    std::size_t count = 1;
+    for (int a = 0; a < 3; ++a) count *= static_cast<std::size_t>(high[a] - low[a] + 1);
+    EXPECT_EQ(level.active, count);
+    for (std::size_t b = 0; b < level.active; ++b)
+      for (int a = 0; a < 3; ++a) {
+        EXPECT_GE(level.blocks[b][a], low[a]);
+        EXPECT_LE(level.blocks[b][a], high[a]);
+      }
+  }
+}
+
 TEST(OctreeGrid, SurroundsEachActiveBlock) {
   const OctreeGrid grid = sphere_grid(6);
   for (const BlockLevel& level : grid.levels)

@@ -127,12 +127,12 @@ double mean_distance(const SurfaceResult& result) {
 // parts are off the whole by 3 e sqrt(area / 12) at most in the root of the mean square, hence in
 // the mean, and neighbours off each other by twice that.
 TEST(Ssd, IsAsGoodInPartsAsAtOnce) {
-  const PointCloud cloud = torus_cloud(20000);
+  const PointCloud cloud = torus_cloud(12000);
   const SurfaceResult whole = ssd(cloud);
   EXPECT_EQ(whole.parts.parts_per_axis, 1u);
   const auto in_parts = [&](int threads) {
     const ThreadLimit limit(threads);
-    return ssd(cloud, {.memory_gib = 0.046});
+    return ssd(cloud, {.memory_gib = 0.031});
   };
   const SurfaceResult parts = in_parts(1);
   EXPECT_EQ(parts.parts.parts_per_axis, 2u);

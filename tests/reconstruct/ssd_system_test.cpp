@@ -51,7 +51,7 @@ double dot(const LevelArrays& a, const LevelArrays& b) {
 
 TEST(SsdSystem, EnergyIsThatOfTheFieldAtTheSamples) {
   Problem problem;
-  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 0, 0));
+  SsdSystem<double> system(problem.grid, problem.samples, even_weights(problem.samples, 0, 0));
   const LevelArrays x = random_arrays(problem.grid, 1);
   const double bending = system.energy(x);
   system.set_weights(even_weights(problem.samples, 5e13, 5e9));
@@ -75,7 +75,7 @@ TEST(SsdSystem, EnergyIsThatOfTheFieldAtTheSamples) {
 // exact.
 TEST(SsdSystem, SmoothnessIsTheIntegralOverTheCube) {
   Problem problem;
-  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 0, 0));
+  SsdSystem<double> system(problem.grid, problem.samples, even_weights(problem.samples, 0, 0));
   const LevelArrays x = random_arrays(problem.grid, 2);
   const SplineField field{problem.grid, x};
   const auto second = [&](const FieldCell& cell, const Eigen::Vector3d& t) {
@@ -114,11 +114,12 @@ TEST(SsdSystem, SmoothnessIsTheIntegralOverTheCube) {
 
 TEST(SsdSystem, HalfTheGradientIsTheResidual) {
   Problem problem;
-  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
+  SsdSystem<double> system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
   const LevelArrays x = random_arrays(problem.grid, 3), direction = random_arrays(problem.grid, 4);
-  LevelArrays product = active_arrays(problem.grid);
+  LevelArrays product = active_arrays(problem.grid), right = product;
   system.multiply(x, product);
-  const double slope = 2 * (dot(product, direction) - dot(system.right_side(), direction));
+  system.right_side(right);
+  const double slope = 2 * (dot(product, direction) - dot(right, direction));
   const auto energy_at = [&](double t) {
     LevelArrays moved = x;
     for (std::size_t l = 0; l < moved.size(); ++l)
@@ -132,7 +133,7 @@ TEST(SsdSystem, HalfTheGradientIsTheResidual) {
 
 TEST(SsdSystem, IsSymmetric) {
   Problem problem;
-  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
+  SsdSystem<double> system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
   const LevelArrays x = random_arrays(problem.grid, 5), y = random_arrays(problem.grid, 6);
   LevelArrays ax = active_arrays(problem.grid), ay = ax;
   system.multiply(x, ax);
@@ -142,7 +143,8 @@ TEST(SsdSystem, IsSymmetric) {
 }
 
 // Of one function.
-LevelArrays column_of(SsdSystem& system, const OctreeGrid& grid, std::size_t l, std::size_t i) {
+LevelArrays column_of(SsdSystem<double>& system, const OctreeGrid& grid, std::size_t l,
+                      std::size_t i) {
   LevelArrays unit = active_arrays(grid), column = unit;
   unit[l][i] = 1;
   system.multiply(unit, column);
@@ -151,7 +153,7 @@ LevelArrays column_of(SsdSystem& system, const OctreeGrid& grid, std::size_t l, 
 
 TEST(SsdSystem, KnowsItsFinestDiagonal) {
   Problem problem;
-  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
+  SsdSystem<double> system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
   for (std::size_t l = problem.grid.levels.size(); l-- > 0;) {
     system.use_levels(l);
     const std::vector<double> diagonal = system.finest_diagonal();
@@ -168,12 +170,11 @@ TEST(SsdSystem, KnowsItsFinestDiagonal) {
 // The samples' matrices go from level to level: the coarsest has met them all.
 TEST(SsdSystem, KnowsItsCoarsestMatrix) {
   Problem problem;
-  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
+  SsdSystem<double> system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
   const std::vector<std::uint32_t> functions = system.coarsest_functions();
   EXPECT_EQ(functions.size(), 1000u);  // 8 cells and two more functions an axis
   CellMatrices term;
-  for (std::size_t l = problem.grid.levels.size() - 1; l-- > 0;)
-    term = system.sample_matrices(l, term);
+  for (std::size_t l = system.levels_of_blocks(); l-- > 0;) term = system.sample_matrices(l, term);
   const Eigen::MatrixXd coarsest = system.coarsest_matrix(term);
   for (std::size_t row = 3; row < functions.size(); row += 140) {
     const LevelArrays column = column_of(system, problem.grid, 0, functions[row]);
@@ -184,9 +185,9 @@ TEST(SsdSystem, KnowsItsCoarsestMatrix) {
 
 TEST(SsdSystem, SolvesItsBlocks) {
   Problem problem;
-  SsdSystem system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
+  SsdSystem<double> system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
   CellMatrices term;
-  for (std::size_t l = problem.grid.levels.size() - 1; l-- > 1;) {
+  for (std::size_t l = system.levels_of_blocks(); l-- > 1;) {
     const BlockLevel& level = problem.grid.levels[l];
     term = system.sample_matrices(l, term);
     const BlockFactors factors(level, system.bending(l), term);
@@ -200,6 +201,32 @@ TEST(SsdSystem, SolvesItsBlocks) {
         // Float's 6e-8, times the condition of a block, some 1e3.
         for (std::size_t i = 0; i < block_size; ++i) EXPECT_NEAR(found[i], i == slot, 1e-4);
       }
+    }
+  }
+}
+
+// The column of a function, cut to its octet, is what its octet's equations answer with the
+// function itself.
+TEST(SsdSystem, SolvesItsOctets) {
+  Problem problem;
+  SsdSystem<double> system(problem.grid, problem.samples, even_weights(problem.samples, 5e6, 50));
+  const std::size_t l = problem.grid.levels.size() - 2;
+  const BlockLevel& level = problem.grid.levels[l];
+  const OctetFactors factors = system.octet_factors();
+  for (std::size_t b = 0; b < level.active; b += level.active / 9) {
+    for (const int slot : {21, 0, 63, 26}) {
+      const std::size_t own = b * block_size + static_cast<std::size_t>(slot);
+      const LevelArrays column = column_of(system, problem.grid, l, own);
+      if (column[l][own] == 0) continue;  // outside the cube
+      std::array<double, block_size> right{}, found;
+      for (int i = 0; i < block_size; ++i)
+        if (i % 4 / 2 == slot % 4 / 2 && i / 8 % 2 == slot / 8 % 2 && i / 32 == slot / 32)
+          right[static_cast<std::size_t>(i)] =
+              column[l][b * block_size + static_cast<std::size_t>(i)];
+      factors.solve(b, right.data(), found.data());
+      // Float's 6e-8, times the condition of an octet, some 1e2.
+      for (int i = 0; i < block_size; ++i)
+        EXPECT_NEAR(found[static_cast<std::size_t>(i)], i == slot, 1e-5);
     }
   }
 }
