@@ -31,6 +31,7 @@ struct ReconstructSettings {
   ReconstructMethod method = ReconstructMethod::ssd;
   SsdOptions ssd;
   bool sharp = false;      // edges and corners put back
+  bool quads = false;      // the dual surface
   double thin_m = 0;       // voxel side before reconstruction; 0: none
   double trim_m = 0;       // surface farther from data is removed; 0: nothing is
   double decimate_m = 0;   // triangles are merged within this distance; 0: none are

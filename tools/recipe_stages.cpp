@@ -60,6 +60,7 @@ void fields(Fields& f, ReconstructSettings& s) {
   f.length("sigma", s.ssd.sigma_m);
   f.length("smoothing_length", s.ssd.smoothing_length_m);
   f.boolean("sharp", s.sharp);
+  f.boolean("quads", s.quads);
   f.length("thin", s.thin_m);
   f.length("trim", s.trim_m);
   f.length("decimate", s.decimate_m);

@@ -9,6 +9,7 @@
 #include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/surface_file.h"
+#include "libscan/reconstruct/dual_mesh.h"
 #include "tools/commands.h"
 #include "tools/inputs.h"
 #include "tools/surface_stage.h"
@@ -23,6 +24,7 @@ struct Arguments {
   long depth = SsdOptions{}.depth;
   double memory_gib = SsdOptions{}.memory_gib;
   bool sharp = false;
+  bool quads = false;
   double trim_m = 0;
   double decimate_m = 0;
   double thin_m = 0;
@@ -34,6 +36,17 @@ std::string area_text(double part_m2, const SurfaceResult& result) {
   std::snprintf(text, sizeof text, "%.3g m2 (%.2f %%)", part_m2,
                 100 * part_m2 / (area_m2(result.surface) + result.trimmed_area_m2));
   return text;
+}
+
+void tell_of_quads(const Mesh& surface, Console& console) {
+  const std::size_t others = surface.triangles.size() - 2 * surface.quads;
+  const QuadWarp warp = quad_warp(surface);
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "%zu quads and %zu other triangles; quads are off flat by %.2g %% rms, at most "
+                "%.2g %% of their width",
+                surface.quads, others, 100 * warp.rms, 100 * warp.largest);
+  console.say(text);
 }
 
 int reconstruct_files(const Arguments& arguments, Console& console) {
@@ -55,6 +68,7 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   settings.ssd.depth = static_cast<int>(arguments.depth);
   settings.ssd.memory_gib = arguments.memory_gib;
   settings.sharp = arguments.sharp;
+  settings.quads = arguments.quads;
   settings.trim_m = arguments.trim_m;
   settings.decimate_m = arguments.decimate_m;
   settings.thin_m = arguments.thin_m;
@@ -69,6 +83,7 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
               std::to_string(result.surface.triangles.size()) + " triangles, " +
               std::to_string(json.at("components").get<int>()) + " components, " +
               (json.at("watertight").get<bool>() ? "watertight" : "not closed"));
+  if (result.surface.quads > 0) tell_of_quads(result.surface, console);
   const double unsupported_m2 = unsupported_area_m2(result);
   if (unsupported_m2 > 0)
     console.say("no data within three spacings of " + area_text(unsupported_m2, result) +
@@ -107,6 +122,8 @@ Action reconstruct_command(CommandLine& line) {
               "ssd: most, GiB; what needs more is solved part by part and blended");
   line.option("--poses", arguments->poses, "a pose for each input, in their order");
   line.flag("--sharp", arguments->sharp, "put edges and corners back; for points of little noise");
+  line.flag("--quads", arguments->quads,
+            "a surface of quads, for ssd, mls, rbf and range-fusion; not for .stl");
   line.length("--trim", arguments->trim_m, "remove surface farther than this from every point");
   line.length("--decimate", arguments->decimate_m,
               "merge triangles as long as the surface stays within this distance, which is proven");

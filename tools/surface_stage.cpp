@@ -42,15 +42,21 @@ void tell_of_points(const SurfaceResult& result, Console& console) {
 
 SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpoints,
                            const ReconstructSettings& settings, Console& console) {
+  if (settings.quads && settings.decimate_m > 0)
+    throw Error(Trouble::usage, "decimate: merges triangles, which quads are not",
+                "leave out one of quads and decimate");
   if (settings.max_sigma_m > 0 && !cloud.sigma_m.empty())
     leave_out_large_sigma(cloud, viewpoints, settings.max_sigma_m);
   if (settings.thin_m > 0) {
     cloud = voxel_grid(cloud, settings.thin_m);
     viewpoints.clear();  // a cube's mean was seen from several places
   }
-  SurfaceResult result = reconstruct(
-      cloud, viewpoints, {.method = settings.method, .ssd = settings.ssd, .sharp = settings.sharp},
-      console.progress());
+  SurfaceResult result = reconstruct(cloud, viewpoints,
+                                     {.method = settings.method,
+                                      .ssd = settings.ssd,
+                                      .sharp = settings.sharp,
+                                      .quads = settings.quads},
+                                     console.progress());
   console.time("reconstruct", result.cost.seconds);
   tell_of_points(result, console);
   if (settings.trim_m > 0) trim(result, settings.trim_m);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libscan/core/point_cloud.h"
@@ -14,10 +15,13 @@ namespace scan {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-// `vertices` in metres; `triangles` counter-clockwise as seen from outside.
+// `vertices` in metres; `triangles` counter-clockwise as seen from outside. The first 2 * `quads`
+// of them are pairs, (a, b, c) and (a, c, d), that make a quad each: files that know polygons get
+// it whole. What works on triangles need not know of it.
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Triangle> triangles;
+  std::size_t quads = 0;
   bool empty() const { return triangles.empty(); }
 };
 
@@ -30,6 +34,19 @@ struct TexturedMesh {
   Mesh mesh;
   std::vector<TextureCorners> corners;
 };
+
+// Calls `visit` with the corners of each quad, then of each other triangle, counter-clockwise.
+template <class Visit>
+void for_each_polygon(const Mesh& mesh, Visit&& visit) {
+  for (std::size_t q = 0; q < mesh.quads; ++q) {
+    const Triangle& first = mesh.triangles[2 * q];
+    const std::array<std::uint32_t, 4> corners{first[0], first[1], first[2],
+                                               mesh.triangles[2 * q + 1][2]};
+    visit(std::span<const std::uint32_t>(corners));
+  }
+  for (std::size_t t = 2 * mesh.quads; t < mesh.triangles.size(); ++t)
+    visit(std::span<const std::uint32_t>(mesh.triangles[t]));
+}
 
 // Throws scan::Error (input) for a triangle that names a vertex which is not there, or a vertex
 // that is not finite.

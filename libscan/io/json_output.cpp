@@ -93,6 +93,7 @@ ordered_json surface_json(const SurfaceResult& result) {
           {"depth", result.depth > 0 ? ordered_json(result.depth) : ordered_json(nullptr)},
           {"vertices", result.surface.vertices.size()},
           {"triangles", result.surface.triangles.size()},
+          {"quads", result.surface.quads},
           {"components", census.components},
           {"watertight", census.watertight},
           {"genus", census.genus},

@@ -33,9 +33,9 @@ nlohmann::ordered_json alignment_json(std::span<const std::string> files,
                                       const MultiviewResult& result, const IcpOptions& options);
 
 // reconstruction.json: `method`, `method_reason`, `depth` (null for methods without), `vertices`,
-// `triangles`, `components`, `watertight`, `genus`, `relative_residual`, `iterations`, `unknowns`,
-// `finest_cell_m`, `sigma_m`, `smoothing_length_m`, `stop`, `invalid_points`, `outlying_points`,
-// `estimated_normals`, `turned_normals`.
+// `triangles`, `quads`, `components`, `watertight`, `genus`, `relative_residual`, `iterations`,
+// `unknowns`, `finest_cell_m`, `sigma_m`, `smoothing_length_m`, `stop`, `invalid_points`,
+// `outlying_points`, `estimated_normals`, `turned_normals`.
 nlohmann::ordered_json surface_json(const SurfaceResult& result);
 
 // `name`, `value`, `unit`, `definition`, `over`, `count`, `limit`, `relation`, `pass`, `reason`,

@@ -200,27 +200,27 @@ std::string obj_text(const Mesh& mesh) {
     for (const double x : v) append_number(text += ' ', x);
     text += '\n';
   }
-  for (const Triangle& triangle : mesh.triangles) {
+  for_each_polygon(mesh, [&](std::span<const std::uint32_t> corners) {
     text += 'f';
-    for (const std::uint32_t corner : triangle)
+    for (const std::uint32_t corner : corners)
       append_number(text += ' ', std::uint64_t{corner} + 1);
     text += '\n';
-  }
+  });
   return text;
 }
 
 std::string off_text(const Mesh& mesh) {
   std::string text = "OFF\n" + std::to_string(mesh.vertices.size()) + " " +
-                     std::to_string(mesh.triangles.size()) + " 0\n";
+                     std::to_string(mesh.triangles.size() - mesh.quads) + " 0\n";
   for (const Eigen::Vector3d& v : mesh.vertices) {
     for (const double x : v) append_number(text, x), text += ' ';
     text.back() = '\n';
   }
-  for (const Triangle& triangle : mesh.triangles) {
-    text += '3';
-    for (const std::uint32_t corner : triangle) append_number(text += ' ', corner);
+  for_each_polygon(mesh, [&](std::span<const std::uint32_t> corners) {
+    append_number(text, std::uint64_t{corners.size()});
+    for (const std::uint32_t corner : corners) append_number(text += ' ', corner);
     text += '\n';
-  }
+  });
   return text;
 }
 

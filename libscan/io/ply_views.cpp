@@ -176,16 +176,18 @@ Ply ply_from(const Mesh& mesh) {
   add_vectors(vertex, position_names, mesh.vertices);
   std::vector<std::int32_t> corners;
   corners.reserve(3 * mesh.triangles.size());
-  for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t corner : triangle) {
+  std::vector<std::uint32_t> sizes;
+  for_each_polygon(mesh, [&](std::span<const std::uint32_t> polygon) {
+    for (const std::uint32_t corner : polygon) {
       if (corner >= mesh.vertices.size() || !std::in_range<std::int32_t>(corner))
         throw Error(Trouble::input, "mesh: a triangle names vertex " + std::to_string(corner) +
                                         " of " + std::to_string(mesh.vertices.size()));
       corners.push_back(static_cast<std::int32_t>(corner));
     }
-  PlyElement face{"face", mesh.triangles.size(), {}};
-  face.properties.push_back({"vertex_indices", std::move(corners),
-                             std::vector<std::uint32_t>(mesh.triangles.size(), 3), true});
+    sizes.push_back(static_cast<std::uint32_t>(polygon.size()));
+  });
+  PlyElement face{"face", sizes.size(), {}};
+  face.properties.push_back({"vertex_indices", std::move(corners), std::move(sizes), true});
   return {{}, {}, {std::move(vertex), std::move(face)}};
 }
 

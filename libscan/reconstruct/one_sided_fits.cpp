@@ -202,6 +202,14 @@ SharpSurface::Active SharpSurface::at(const Eigen::Vector3d& x) const {
   return active;
 }
 
+Eigen::Vector3d SharpSurface::onto(Eigen::Vector3d x) const {
+  for (int step = 0; step < 8; ++step) {
+    const Active active = at(x);
+    x -= active.distance * pieces[active.piece].normal(x);
+  }
+  return x;
+}
+
 int SharpSurface::piece_like(const Eigen::Vector3d& normal, const Eigen::Vector3d& x) const {
   int best = 0;
   for (int p = 1; p < count; ++p)

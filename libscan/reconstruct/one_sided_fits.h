@@ -35,6 +35,8 @@ struct SharpSurface {
     int piece = 0;
   };
   Active at(const Eigen::Vector3d& x) const;
+  // The place on the surface below x, by steps along the active piece's normal.
+  Eigen::Vector3d onto(Eigen::Vector3d x) const;
   // The piece whose normal at x is nearest to `normal`.
   int piece_like(const Eigen::Vector3d& normal, const Eigen::Vector3d& x) const;
   // The nearest place where the named pieces meet, from x, by Newton steps.

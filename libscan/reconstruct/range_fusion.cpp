@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <tuple>
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
@@ -21,6 +22,9 @@ namespace {
 constexpr double beside = 2.5;  // reach across a ray, in spacings
 constexpr double least_cosine = 0.05;
 constexpr double free_margin = 1.5;  // before this many truncations from its end a ray is free
+constexpr double behind_cells = 2;  // of the rays' grid, behind the surface: where they are counted
+constexpr double same_side = 0.5;   // cosine between normals of one side of an edge or a wall
+constexpr double normal_tolerance2 = 0.64;  // as in moving least squares
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 struct Ray {
@@ -64,10 +68,45 @@ class FusedField {
 
   double value(const Eigen::Vector3d& x) const {
     thread_local std::vector<Neighbour> found;
+    thread_local std::vector<Say> says;
     const Ray& nearest = rays_[tree_.nearest(x, unlimited_m)->index];
     // Truncations are alike among neighbours; those of far ones must not make the search slow.
     tree_.within(x, std::min(widest_, 1.5 * std::hypot(nearest.reach, nearest.truncation)), found);
+    collect(x, found, says);
+    if (says.empty()) return unknown;
+    const Eigen::Vector3d normal = normal_of(says);
     double sum = 0, weights = 0, truncation = 0;
+    for (const Say& say : says) {
+      const Eigen::Vector3d& own = samples_.normals[say.sample];
+      const double weight =
+          say.weight * std::exp(-(own - normal).squaredNorm() / normal_tolerance2);
+      // Between the tangent planes at the sample and here: exact on spheres.
+      sum += weight * (x - samples_.points[say.sample]).dot((own + normal).normalized());
+      weights += weight;
+      truncation = std::max(truncation, rays_[say.sample].truncation);
+    }
+    if (!(weights > 0)) return unknown;
+    // Rays that come out behind the surface have passed through it and speak as loudly as those
+    // that end there. These were counted over the disc of their reach, whose weight (1 - t^2)^2 has
+    // the mean 1/3; those over the cross-section of a cell.
+    const double cell = std::sqrt(free_.cell_area());
+    const Eigen::Vector3d behind = x - (sum / weights + behind_cells * cell) * normal;
+    const double disc = std::numbers::pi / 3 * nearest.reach * nearest.reach;
+    const double passing = std::max(0.0, free_.rays_through(behind, normal)) * disc /
+                           free_.cell_area() * nearest.weight;
+    return (sum + passing * truncation) / (weights + passing);
+  }
+
+ private:
+  // What a sample has to say of a place.
+  struct Say {
+    std::uint32_t sample;
+    double weight, distance2;
+  };
+
+  void collect(const Eigen::Vector3d& x, const std::vector<Neighbour>& found,
+               std::vector<Say>& says) const {
+    says.clear();
     for (const Neighbour& n : found) {
       const Ray& ray = rays_[n.index];
       if (!(ray.weight > 0)) continue;
@@ -77,21 +116,23 @@ class FusedField {
       if (std::abs(along) > ray.truncation || across2 > ray.reach * ray.reach) continue;
       const double t = 1 - across2 / (ray.reach * ray.reach);
       const double s = 1 - along * along / (ray.truncation * ray.truncation);
-      const double weight = ray.weight * t * t * s;
-      sum += weight * offset.dot(samples_.normals[n.index]);
-      weights += weight;
-      truncation = std::max(truncation, ray.truncation);
+      says.push_back({n.index, ray.weight * t * t * s, n.distance2_m2});
     }
-    if (!(weights > 0)) return unknown;
-    // A ray that passes speaks as loudly as one that ends here. Those were counted over the disc of
-    // their reach, whose weight (1 - t^2)^2 has the mean 1/3; these over the cross-section of a
-    // cell.
-    const double disc = std::numbers::pi / 3 * nearest.reach * nearest.reach;
-    const double passing = free_.mean_rays_about(x) * disc / free_.cell_area() * nearest.weight;
-    return (sum + passing * truncation) / (weights + passing);
   }
 
- private:
+  // The mean normal of the samples that face as the nearest one does.
+  Eigen::Vector3d normal_of(const std::vector<Say>& says) const {
+    const auto nearest = std::min_element(says.begin(), says.end(), [](const Say& a, const Say& b) {
+      return std::tie(a.distance2, a.sample) < std::tie(b.distance2, b.sample);
+    });
+    const Eigen::Vector3d& first = samples_.normals[nearest->sample];
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Say& say : says)
+      if (const Eigen::Vector3d& n = samples_.normals[say.sample]; n.dot(first) > same_side)
+        sum += say.weight * n;
+    return sum.normalized();
+  }
+
   const Samples& samples_;
   const std::vector<Ray>& rays_;
   const RayBricks& free_;
@@ -146,11 +187,11 @@ SurfaceResult range_fusion(const PointCloud& cloud, std::span<const Eigen::Vecto
   const Samples samples = prepare_samples(cloud);
   const double cell = options.cell_spacings * typical_spacing(samples);
   const int depth = static_cast<int>(
-      std::clamp(std::floor(-std::log2(cell)), 3.0, static_cast<double>(options.max_depth)));
+      std::clamp(std::ceil(-std::log2(cell)), 3.0, static_cast<double>(options.max_depth)));
   if (progress) progress("rays", 0);
   std::vector<Eigen::Vector3d> from;
   const std::vector<Ray> rays = rays_of(samples, cloud, viewpoints, options, from);
-  RayBricks free(samples.points, depth);
+  RayBricks free(samples.points, depth - 1);  // a finer cell sees too few rays
   parallel_for(rays.size(), [&](std::size_t i) {
     if (!(rays[i].weight > 0)) return;
     const double margin = free_margin * rays[i].truncation;

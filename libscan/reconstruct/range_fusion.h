@@ -19,12 +19,14 @@ struct RangeFusionOptions {
 void check(const RangeFusionOptions& options);
 
 // Truncated signed distances (Curless and Levoy 1996): each point speaks of places on and beside
-// its ray within its truncation, by the distance from its plane, weighted by the cosine of
-// incidence and 1 / sigma^2. A ray that passes through a place and ends beyond says that it is
-// free, so that scanners see through strays. Where nothing is known the surface ends. Points need
-// unit normals and the place of their scanner; one that is not finite leaves its point out. Throws
-// scan::Error: usage for options outside their limits, input for missing viewpoints, fewer than 16
-// valid points or a cloud without extent, computation for an empty surface.
+// its ray within its truncation, weighted by the cosine of incidence, 1 / sigma^2 and how far it
+// faces as the point nearest to the place does, so that corners and thin walls stay. The distance
+// is that from between the tangent planes there and here. Rays that come out behind a surface say
+// that it is not there, so that scanners see through strays. Where nothing is known the surface
+// ends. Points need unit normals and the place of their scanner; one that is not finite leaves its
+// point out. Throws scan::Error: usage for options outside their limits, input for missing
+// viewpoints, fewer than 16 valid points or a cloud without extent, computation for an empty
+// surface.
 SurfaceResult range_fusion(const PointCloud& cloud, std::span<const Eigen::Vector3d> viewpoints,
                            const RangeFusionOptions& options = {}, const Progress& progress = {});
 

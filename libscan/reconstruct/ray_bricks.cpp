@@ -34,7 +34,7 @@ RayBricks::RayBricks(std::span<const Eigen::Vector3d> places, int depth) : cells
     }
   std::sort(keys_.begin(), keys_.end());
   keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
-  counts_.reset(new std::atomic<std::uint32_t>[keys_.size() * width * width * width]());
+  sums_.reset(new std::atomic<std::int32_t>[3 * keys_.size() * width * width * width]());
 }
 
 std::int64_t RayBricks::slot_of(const Eigen::Vector3d& u) const {
@@ -49,21 +49,25 @@ std::int64_t RayBricks::slot_of(const Eigen::Vector3d& u) const {
 
 void RayBricks::count(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const double length = (to - from).norm() * cells_;
+  const Eigen::Vector3d direction = unit * (from - to).normalized();
   const auto steps = static_cast<std::int64_t>(length);
   for (std::int64_t i = 0; i <= steps; ++i) {
     const std::int64_t slot = slot_of(to + (from - to) * (static_cast<double>(i) / length));
-    if (slot >= 0) counts_[slot].fetch_add(1, std::memory_order_relaxed);
+    for (int a = 0; slot >= 0 && a < 3; ++a)
+      sums_[3 * slot + a].fetch_add(static_cast<std::int32_t>(std::lround(direction[a])),
+                                    std::memory_order_relaxed);
   }
 }
 
-double RayBricks::mean_rays_about(const Eigen::Vector3d& u) const {
-  std::uint32_t sum = 0;
+double RayBricks::rays_through(const Eigen::Vector3d& u, const Eigen::Vector3d& normal) const {
+  double sum = 0;
   for (int i = 0; i < 27; ++i) {
     const Eigen::Vector3d offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
     const std::int64_t slot = slot_of(u + offset / cells_);
-    if (slot >= 0) sum += counts_[slot].load(std::memory_order_relaxed);
+    for (int a = 0; slot >= 0 && a < 3; ++a)
+      sum += normal[a] * sums_[3 * slot + a].load(std::memory_order_relaxed);
   }
-  return sum / 27.0;
+  return sum / (27 * unit);
 }
 
 }  // namespace scan

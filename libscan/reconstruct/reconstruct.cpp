@@ -7,6 +7,7 @@
 #include "libscan/core/error.h"
 #include "libscan/reconstruct/choose_method.h"
 #include "libscan/reconstruct/delaunay.h"
+#include "libscan/reconstruct/dual_mesh.h"
 #include "libscan/reconstruct/poisson.h"
 #include "libscan/reconstruct/scale_space.h"
 #include "libscan/reconstruct/sharp_features.h"
@@ -66,6 +67,19 @@ void require_extent(const PointCloud& cloud, ReconstructMethod method) {
                 "try mls or delaunay");
 }
 
+// Quads, edges and corners put back, or both.
+SharpReport reshape(SurfaceResult& result, const PreparedPoints& prepared,
+                    const ReconstructOptions& options) {
+  const auto& [points, normals] = std::tie(prepared.cloud.points, prepared.cloud.normals);
+  if (options.quads && options.sharp) {
+    const OneSidedFits fits(points, normals, prepared.spacing_m);
+    return make_dual(result, points, &fits);
+  }
+  if (options.quads) return make_dual(result, points);
+  if (options.sharp) return sharpen(result, points, normals, prepared.spacing_m);
+  return {};
+}
+
 }  // namespace
 
 const std::vector<std::string>& reconstruct_method_names() {
@@ -94,8 +108,7 @@ SurfaceResult reconstruct(const PointCloud& cloud, std::span<const Eigen::Vector
   result.outlying_points += points.outlying_points;
   result.estimated_normals = points.estimated_normals;
   result.turned_normals = points.turned_normals;
-  if (options.sharp)
-    result.sharp = sharpen(result, points.cloud.points, points.cloud.normals, points.spacing_m);
+  result.sharp = reshape(result, points, options);
   result.data_spacing_m = of_nearest_points(result.surface, points.cloud.points, points.spacing_m);
   result.cost.seconds = watch.seconds();
   return result;

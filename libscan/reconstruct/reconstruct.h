@@ -42,6 +42,7 @@ struct ReconstructOptions {
   RbfOptions rbf;
   RangeFusionOptions range_fusion;
   bool sharp = false;  // edges and corners put back (sharp_features.h)
+  bool quads = false;  // the dual surface (dual_mesh.h), for methods that cut one out of cells
 };
 
 // Prepares the points (prepare_points.h) and calls the method; `automatic` ("auto") is one that

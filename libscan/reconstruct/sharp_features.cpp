@@ -55,11 +55,7 @@ class Sharpener {
       const SharpSurface surface = fits_.about(mesh_.vertices[v]);
       if (surface.count == 0) return;
       const Eigen::Vector3d start = mesh_.vertices[v];
-      Eigen::Vector3d x = start;
-      for (int step = 0; step < 8; ++step) {
-        const auto active = surface.at(x);
-        x -= active.distance * surface.pieces[active.piece].normal(x);
-      }
+      const Eigen::Vector3d x = surface.onto(start);
       if (!x.allFinite() || (x - start).norm() > 2 * fits_.spacing_at(start)) return;
       mesh_.vertices[v] = x;
       sides_[v].normals[0] = surface.pieces[surface.at(x).piece].normal(x);

@@ -53,6 +53,7 @@ SurfaceResult world_result(Mesh mesh, const Samples& samples, const std::vector<
   result.surface = supported_components(mesh, samples.points, samples.area, least_support);
   mesh = {};
   add_support(samples, length, result);
+  result.cells_from_m = samples.box.origin_m;
   for (auto& vertex : result.surface.vertices) vertex = samples.box.to_world(vertex);
   return result;
 }

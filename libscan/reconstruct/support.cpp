@@ -60,13 +60,18 @@ std::vector<std::uint32_t> triangle_components(const Mesh& mesh) {
   return components;
 }
 
-Mesh kept_triangles(const Mesh& mesh, const std::vector<char>& keep,
+Mesh kept_triangles(const Mesh& mesh, std::vector<char> keep,
                     std::vector<std::uint32_t>& vertex_of) {
+  Mesh kept;
+  for (std::size_t q = 0; q < mesh.quads; ++q)
+    if (keep[2 * q] && keep[2 * q + 1])
+      ++kept.quads;
+    else
+      keep[2 * q] = keep[2 * q + 1] = 0;
   std::vector<std::uint32_t> renumbered(mesh.vertices.size(), none);
   for (std::size_t t = 0; t < keep.size(); ++t)
     if (keep[t])
       for (const std::uint32_t v : mesh.triangles[t]) renumbered[v] = 0;
-  Mesh kept;
   vertex_of.clear();
   for (std::uint32_t v = 0; v < renumbered.size(); ++v)
     if (renumbered[v] != none) {

@@ -19,9 +19,9 @@ std::vector<double> of_nearest_points(const Mesh& mesh, std::span<const Eigen::V
 // Component of each triangle (connected by shared vertices), numbered by first appearance.
 std::vector<std::uint32_t> triangle_components(const Mesh& mesh);
 
-// The triangles that are kept and the vertices they use, both in their old order. `vertex_of` gets
-// the old index of each vertex.
-Mesh kept_triangles(const Mesh& mesh, const std::vector<char>& keep,
+// The triangles that are kept and the vertices they use, both in their old order; of a quad both
+// halves or none. `vertex_of` gets the old index of each vertex.
+Mesh kept_triangles(const Mesh& mesh, std::vector<char> keep,
                     std::vector<std::uint32_t>& vertex_of);
 
 // Without the components that are nearest to less than `least_share` of the points' weight.

@@ -49,8 +49,9 @@ struct SurfaceResult {
   // poses for right: errors that a scan's points share are not in it. Empty: the method does not
   // know.
   std::vector<double> standard_error_m;
-  double finest_cell_m = 0;
-  int depth = 0;                  // of the solution's finest cells
+  double finest_cell_m = 0;  // that the surface was cut out of; 0: of none
+  Eigen::Vector3d cells_from_m = Eigen::Vector3d::Zero();  // a corner of theirs
+  int depth = 0;                                           // of the solution's finest cells
   double sigma_m = 0;             // scatter of the points, median; given or estimated
   double smoothing_length_m = 0;  // median; ripples of 2 pi times this are halved
   std::size_t unknowns = 0;

@@ -21,6 +21,7 @@ SurfaceResult world_surface(Mesh mesh, const Samples& samples, const char* metho
   for (double& support : result.support_m) support *= samples.box.side_m;
   for (auto& vertex : mesh.vertices) vertex = samples.box.to_world(vertex);
   result.surface = std::move(mesh);
+  result.cells_from_m = samples.box.origin_m;
   result.invalid_points = samples.invalid_points;
   result.outlying_points = samples.outlying_points;
   return result;

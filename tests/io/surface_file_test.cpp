@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "libscan/io/mesh_text.h"
+#include "libscan/io/ply.h"
 #include "libscan/io/scan_file.h"
 #include "tests/core/meshes.h"
 #include "tests/io/io_test_support.h"
@@ -42,6 +44,25 @@ TEST(SupportedMesh, WithoutListsIsAPlainMesh) {
     EXPECT_TRUE(read.data_spacing_m.empty());
     EXPECT_TRUE(read.standard_error_m.empty());
   }
+}
+
+// Two quads and a triangle: whole in the file, the same halves when it is read.
+TEST(SupportedMesh, KeepsQuadsWhole) {
+  const TemporaryFolder folder;
+  Mesh mesh;
+  for (int i = 0; i < 7; ++i) mesh.vertices.push_back({i * 1.0, i * i * 0.1, 0.25 * (i % 2)});
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 2, 4}, {3, 4, 5}, {4, 6, 5}};
+  mesh.quads = 2;
+  write_supported_mesh(folder / "surface.ply", {mesh, {}, {}, {}});
+  const Ply ply = read_ply(folder / "surface.ply");
+  EXPECT_EQ(ply.find("face")->find("vertex_indices")->lengths,
+            (std::vector<std::uint32_t>{4, 4, 3}));
+  for (const char* name : {"surface.ply", "surface.obj", "surface.off"}) {
+    write_supported_mesh(folder / name, {mesh, {}, {}, {}});
+    EXPECT_EQ(read_mesh(folder / name).triangles, mesh.triangles);
+  }
+  EXPECT_NE(obj_text(mesh).find("f 1 2 3 4\n"), std::string::npos);
+  EXPECT_NE(off_text(mesh).find("\n7 3 0\n"), std::string::npos);
 }
 
 TEST(SupportedMesh, RefusesListsOfOtherLength) {

@@ -34,6 +34,17 @@ TEST(Trim, RemovesWhatIsFarFromDataAndSmallParts) {
   EXPECT_NEAR(area_m2(result.surface), 1, 1e-15);
 }
 
+// The second quad loses a corner and goes whole, though one half is near the data.
+TEST(Trim, KeepsOrRemovesQuadsWhole) {
+  SurfaceResult result = strip();
+  result.surface.triangles = {{0, 1, 4}, {0, 4, 3}, {4, 1, 2}, {4, 2, 5}, {6, 7, 8}};
+  result.surface.quads = 2;
+  result.support_m = {0, 0, 0, 0, 0, 9, 0, 0, 0};
+  trim(result, 1.0, 0);
+  EXPECT_EQ(result.surface.quads, 1u);
+  EXPECT_EQ(result.surface.triangles, (std::vector<Triangle>{{0, 1, 3}, {0, 3, 2}, {4, 5, 6}}));
+}
+
 // Of the two vertices 9 m from data one lies more than three spacings off, in one triangle and both
 // in another.
 TEST(Trim, LeavesNoUnsupportedArea) {
