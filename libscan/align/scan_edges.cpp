@@ -3,11 +3,15 @@
 #include "libscan/align/scan_edges.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 #include "libscan/align/agreement.h"
+#include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {
@@ -21,6 +25,9 @@ constexpr double expected_in_spacings = 4;
 // How far off a guess usually puts a scan, in units of its size.
 constexpr double guess_share_of_size = 0.05;
 constexpr double limit_of_six = 22.458;  // 99.9 % quantile of chi-square
+
+// Of what a pair fixes best; motions below are open.
+constexpr double open_share = 1e-12;
 
 // With less, a pair that stands alone is tried from other starts as well.
 constexpr double good_agreement = 0.8;
@@ -106,6 +113,48 @@ const ScanEdge* known_edge(const EdgeTask& task, const std::vector<ScanEdge>& kn
   return nullptr;
 }
 
+double size_m(const PreparedScans& scans, const ScanEdge& edge) {
+  return std::min(scans.clouds[edge.source].radius_m, scans.clouds[edge.target].radius_m);
+}
+
+// Orthonormal motions about the overlap's centre, translations in units of the size, and which of
+// them the pair leaves open.
+struct PairMotions {
+  Matrix6 directions;
+  std::array<bool, 6> open;
+};
+
+PairMotions motions_of(const ScanEdge& edge, double size_m) {
+  Vector6 unit;
+  unit << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(size_m);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(unit.asDiagonal() * edge.information *
+                                                      unit.asDiagonal());
+  PairMotions motions{.directions = solver.eigenvectors(), .open = {}};
+  for (int i = 0; i < 6; ++i)
+    motions.open[std::size_t(i)] =
+        !(solver.eigenvalues()[i] > open_share * solver.eigenvalues()[5]);
+  return motions;
+}
+
+// How far the pair moved from its guess along each motion that it fixes, metres, turns by what they
+// move at the size; root mean square. None if all are open.
+std::optional<double> off_guess_m(const ScanEdge& edge, double size_m) {
+  const PairMotions motions = motions_of(edge, size_m);
+  const Eigen::Translation3d there(edge.centre), back(-edge.centre);
+  Vector6 off =
+      log(Pose(back * edge.target_from_source_guess * edge.target_from_source.inverse() * there));
+  off.tail<3>() /= size_m;
+  double square = 0, fixed = 0;
+  for (int i = 0; i < 6; ++i) {
+    if (motions.open[std::size_t(i)]) continue;
+    const double along = motions.directions.col(i).dot(off);
+    square += along * along;
+    ++fixed;
+  }
+  if (fixed == 0) return std::nullopt;
+  return size_m * std::sqrt(square / fixed);
+}
+
 }  // namespace
 
 std::vector<ScanEdge> align_pairs(const PreparedScans& scans, std::span<const EdgeTask> tasks,
@@ -127,17 +176,33 @@ std::vector<ScanEdge> align_pairs(const PreparedScans& scans, std::span<const Ed
   return edges;
 }
 
-PoseEdge graph_edge(const PreparedScans& scans, const ScanEdge& edge) {
+double guess_sigma_m(const PreparedScans& scans, std::span<const ScanEdge> edges) {
+  std::vector<double> offs_m;
+  for (const ScanEdge& edge : edges)
+    if (has_answer(edge))
+      if (const auto off_m = off_guess_m(edge, size_m(scans, edge))) offs_m.push_back(*off_m);
+  return median(std::move(offs_m));
+}
+
+PoseEdge graph_edge(const PreparedScans& scans, const ScanEdge& edge, double guess_sigma_m) {
   const PreparedCloud& source = scans.clouds[edge.source];
   const PreparedCloud& target = scans.clouds[edge.target];
-  const double size_m = std::min(source.radius_m, target.radius_m);
-  const double off_m = std::max(edge.rms_m, rounding * (size_m + target.origin.norm()));
-  Vector6 floor;  // inverses of the variances, about the overlap's centre
-  floor << Eigen::Vector3d::Constant(size_m * size_m / (off_m * off_m)),
-      Eigen::Vector3d::Constant(1 / (off_m * off_m));
+  const double size = size_m(scans, edge);
+  const double off_m = std::max(edge.rms_m, rounding * (size + target.origin.norm()));
+  Vector6 unit;  // of motions about the overlap's centre: metres at the size
+  unit << Eigen::Vector3d::Constant(size), Eigen::Vector3d::Ones();
+  const Vector6 floor = unit.cwiseAbs2() / (off_m * off_m);  // inverses of the variances
   // (I^-1 + F^-1)^-1 = I (I + F)^-1 F, which holds for a singular I, too.
   const Matrix6 limit = floor.asDiagonal();
-  const Matrix6 less = edge.information * (edge.information + limit).ldlt().solve(limit);
+  Matrix6 less = edge.information * (edge.information + limit).ldlt().solve(limit);
+  if (guess_sigma_m > 0) {
+    const PairMotions motions = motions_of(edge, size);
+    for (int i = 0; i < 6; ++i) {
+      if (!motions.open[std::size_t(i)]) continue;
+      const Vector6 row = unit.cwiseProduct(motions.directions.col(i)) / guess_sigma_m;
+      less += row * row.transpose();
+    }
+  }
   Matrix6 to_centre = Matrix6::Identity();
   to_centre.bottomLeftCorner<3, 3>() = -cross_matrix(edge.centre - target.origin);
   const Matrix6 about_origin = to_centre.transpose() * less * to_centre;
@@ -156,7 +221,8 @@ SolvedPoses solve_edges(const PreparedScans& scans, std::span<const Pose> starts
     return edges[a].overlap * edges[a].agreement > edges[b].overlap * edges[b].agreement;
   });
   std::vector<PoseEdge> graph;
-  for (const std::size_t k : order) graph.push_back(graph_edge(scans, edges[k]));
+  const double sigma_m = guess_sigma_m(scans, edges);
+  for (const std::size_t k : order) graph.push_back(graph_edge(scans, edges[k], sigma_m));
   PoseGraph solved = solve_pose_graph(starts, graph, anchor);
   for (std::size_t k = 0; k < order.size(); ++k) edges[order[k]].accepted = solved.accepted[k];
   return {std::move(solved.world_from_scan), std::move(solved.tied)};

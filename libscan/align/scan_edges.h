@@ -32,11 +32,17 @@ struct SolvedPoses {
 SolvedPoses solve_edges(const PreparedScans& scans, std::span<const Pose> starts,
                         std::vector<ScanEdge>& edges, std::size_t anchor);
 
+// How far off the guesses put the scans, standard deviation: the median of what the pairs are off
+// theirs along the motions that they fix; 0 if none fixes any.
+double guess_sigma_m(const PreparedScans& scans, std::span<const ScanEdge> edges);
+
 // The information of an edge for the graph, about the target's prepared origin: that of the icp,
 // less what a smooth distortion by the device may add. Of such a distortion a rigid motion absorbs
 // about as much as it leaves in the residuals: sigma is their rms for the shift, and for the turn
-// their rms over the size of the overlap.
-PoseEdge graph_edge(const PreparedScans& scans, const ScanEdge& edge);
+// their rms over the size of the overlap. Along motions that the pair leaves open its pose is the
+// guess's, and as sure as that: without, many pairs that each hold something else would carry
+// scans farther off than the guesses had them.
+PoseEdge graph_edge(const PreparedScans& scans, const ScanEdge& edge, double guess_sigma_m);
 
 // Whether an edge is off the poses by no more than what a guess may be off, 0.05 rad and 0.05 of
 // the size. Along a motion that a pair leaves open its pose is the guess's: however far it is off

@@ -13,14 +13,16 @@
 namespace scan {
 namespace {
 
-// Patches of two widths, one twice the other. Of fewer points some narrow ones would be all but
-// empty: then the wide ones tell alone.
-constexpr std::size_t wide_patches = 64, narrow_patches = 4 * wide_patches;
+// Patches of two widths, one twice the other; half as many where else some narrow ones would be all
+// but empty. Where these are, too, the wide ones tell alone: what they share across their borders
+// is then missed.
+constexpr std::size_t most_wide_patches = 64, least_wide_patches = 32;
+constexpr std::size_t narrow_in_wide = 4;
 constexpr std::size_t least_points_of_patch = 4;
 constexpr std::size_t parallel_points = 8192;  // below, a task costs more than it saves
-// Noise of their own is estimated at 1 +- 0.32 (6.5 / 64 below). Cut off at 1 the inverses of its
-// estimates would have a mean of 0.87, cut off 1.5 sigma below 0.99.
-constexpr double least_sharing = 1 / (1 + 1.5 * 0.32);
+// Noise of their own is estimated at 1 +- 0.32 by 64 patches (6.5 / 64 below). Cut off at 1 the
+// inverses of its estimates would have a mean of 0.87, cut off so many sigmas below 0.99.
+constexpr double least_in_sigmas = 1.5;
 
 class Patches {
  public:
@@ -98,17 +100,23 @@ class Patches {
 
 double noise_sharing(std::span<const Vector6> pulls, std::span<const Eigen::Vector3d> at,
                      int dimensions) {
-  const Patches patches(pulls, at, narrow_patches);
-  double root = std::sqrt(patches.ratio(wide_patches, dimensions));
+  const auto enough_for = [&](std::size_t wide) {
+    return pulls.size() >= least_points_of_patch * narrow_in_wide * wide;
+  };
+  const std::size_t wide = enough_for(most_wide_patches) ? most_wide_patches : least_wide_patches;
+  const Patches patches(pulls, at, narrow_in_wide * wide);
+  double root = std::sqrt(patches.ratio(wide, dimensions));
   double variance = 2;  // times the patches' number, of the square of a sum of normal noise
-  if (pulls.size() >= least_points_of_patch * narrow_patches) {
-    root = std::max(0.5 * root, 2 * root - std::sqrt(patches.ratio(narrow_patches, dimensions)));
+  if (enough_for(wide)) {
+    const double narrow_root = std::sqrt(patches.ratio(narrow_in_wide * wide, dimensions));
+    root = std::max(0.5 * root, 2 * root - narrow_root);
     // Roots vary by half: the wide by 1 / 2, the narrow by 1 / 8, which is in the wide, too; the
     // root by 4 / 2 + 1 / 8 - 4 / 8, and its square by four times that.
     variance = 6.5;
   }
+  variance /= static_cast<double>(wide);
   // The mean of the inverse is above the inverse of the mean by the variance.
-  return std::max(least_sharing, root * root * (1 + variance / wide_patches));
+  return std::max(1 / (1 + least_in_sigmas * std::sqrt(variance)), root * root * (1 + variance));
 }
 
 }  // namespace scan

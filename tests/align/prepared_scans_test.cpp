@@ -29,12 +29,12 @@ TEST(PreparedScans, AreThinnedAlikeByTheirMedianSpacing) {
   EXPECT_EQ(scans.tolerance_m.size(), 3u);
 }
 
-// One row of 40 has 2.1 times the others' sigma, and the next 1.9 times.
-TEST(PreparedScans, LeaveOutPointsOfTwiceTheMedianSigma) {
+// One row of 40 has 4.1 times the others' sigma, and the next 3.9 times.
+TEST(PreparedScans, LeaveOutPointsOfFourTimesTheMedianSigma) {
   PointCloud cloud = lattice(0.01);
   cloud.sigma_m.assign(1600, 1e-4);
-  std::fill_n(cloud.sigma_m.begin(), 40, 2.1e-4);
-  std::fill_n(cloud.sigma_m.begin() + 40, 40, 1.9e-4);
+  std::fill_n(cloud.sigma_m.begin(), 40, 4.1e-4);
+  std::fill_n(cloud.sigma_m.begin() + 40, 40, 3.9e-4);
   const std::vector<PointCloud> clouds{cloud};
   EXPECT_EQ(prepare_scans(clouds, {.thin_m = 1e-3}).clouds[0].size(), 1560u);
 }

@@ -21,13 +21,13 @@ PreparedScans two_scans() {
   return scans;
 }
 
-PoseEdge edge_of(const Matrix6& information) {
+PoseEdge edge_of(const Matrix6& information, double guess_sigma_m = 0) {
   const PreparedScans scans = two_scans();
   ScanEdge edge{.source = 0, .target = 1};
   edge.rms_m = rms_m;
   edge.centre = scans.clouds[1].origin + arm;
   edge.information = information;
-  return graph_edge(scans, edge);
+  return graph_edge(scans, edge, guess_sigma_m);
 }
 
 // An icp that is sure without limit leaves what a distortion may do: at the overlap's centre
@@ -62,6 +62,39 @@ TEST(GraphEdge, LeavesOpenWhatIsOpen) {
   const double others = about_origin.norm();
   EXPECT_LT(about_origin.col(5).norm(), 1e-12 * others);  // rounding
   EXPECT_GT(about_origin(3, 3), 1e-3 * others);
+}
+
+// What a pair leaves open is as sure as the guess, at the overlap's centre: a slide by its sigma, a
+// turn by that over the size; what it fixes is as sure as before.
+TEST(GraphEdge, IsAsSureAsTheGuessAlongWhatIsOpen) {
+  constexpr double guess_m = 0.02;
+  Matrix6 information = 1e12 * Matrix6::Identity();
+  information(0, 0) = information(5, 5) = 0;
+  Matrix6 to_centre = Matrix6::Identity();
+  to_centre.bottomLeftCorner<3, 3>() = -cross_matrix(arm);
+  const Matrix6 about_centre =
+      to_centre * edge_of(information, guess_m).information.inverse() * to_centre.transpose();
+  Vector6 sigmas;  // 1e12 is 1e6 and more of what a distortion allows
+  const double turn = rms_m / size_m;
+  sigmas << guess_m / size_m, turn, turn, rms_m, rms_m, guess_m;
+  const Matrix6 should = sigmas.cwiseAbs2().asDiagonal();
+  EXPECT_TRUE(about_centre.isApprox(should, 1e-5)) << about_centre;
+}
+
+// Pairs that moved by 1, 3 and 9 mm along z, the one motion that they fix, and any way along those
+// that they leave open; one that fixes nothing says nothing.
+TEST(GuessSigma, IsTheMedianAlongWhatPairsFix) {
+  const PreparedScans scans = two_scans();
+  std::vector<ScanEdge> edges;
+  for (const double along_m : {9e-3, 1e-3, 3e-3, 0.5}) {
+    ScanEdge edge{.source = 0, .target = 1, .stop = Stop::degenerate};
+    edge.centre = scans.clouds[1].origin + arm;
+    edge.target_from_source.translation() = Eigen::Vector3d(0.1, -0.2, along_m);
+    if (along_m < 0.1) edge.information(5, 5) = 1e6;
+    edges.push_back(edge);
+  }
+  EXPECT_NEAR(guess_sigma_m(scans, edges), 3e-3, 1e-12);  // rounding of 1 m
+  EXPECT_EQ(guess_sigma_m(scans, std::span(edges).last(1)), 0);
 }
 
 }  // namespace
