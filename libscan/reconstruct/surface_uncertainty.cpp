@@ -174,12 +174,14 @@ std::vector<SurfaceVariance> surface_variances(const SurfaceResult& surface,
     return surface_variances(surface, subset(cloud, valid), subset(common, valid));
   const SurfaceWeights weights(surface.surface, surface.vertex_smoothing_m, cloud);
   std::vector<SurfaceVariance> variances(surface.surface.vertices.size());
+  std::vector<double> residuals_m(variances.size());
   parallel_for(variances.size(), [&](std::size_t v) {
     const std::vector<WeighedPoint> points = weights.at(v);
     const Patch patch(cloud, common, surface.sigma_m, points, weights.normal(v));
+    residuals_m[v] = weights.mean_residual_m(points);
     variances[v] = {.points_m2 = patch.of_points(), .poses_m2 = patch.of_poses()};
   });
-  const std::vector<double> taken_m2 = weights.taken_m2();
+  const std::vector<double> taken_m2 = weights.taken_m2(residuals_m);
   for (std::size_t v = 0; v < taken_m2.size(); ++v) variances[v].smoothing_m2 = taken_m2[v];
   return variances;
 }

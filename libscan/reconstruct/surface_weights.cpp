@@ -121,21 +121,19 @@ std::vector<WeighedPoint> SurfaceWeights::at(std::size_t vertex) const {
   return weights;
 }
 
-template <class ValueAt>
-std::vector<double> SurfaceWeights::smoothed(ValueAt&& value_at) const {
-  std::vector<double> means(surface_.vertices.size(), 0.0);
-  parallel_for(means.size(), [&](std::size_t v) {
-    for (const WeighedPoint& p : at(v)) means[v] += p.weight * value_at(feet_[p.point]);
-  });
-  return means;
+double SurfaceWeights::mean_residual_m(std::span<const WeighedPoint> points) const {
+  double mean_m = 0;
+  for (const WeighedPoint& p : points) mean_m += p.weight * feet_[p.point].residual_m;
+  return mean_m;
 }
 
-std::vector<double> SurfaceWeights::taken_m2() const {
-  const std::vector<double> once_m = smoothed([](const Foot& foot) { return foot.residual_m; });
-  const std::vector<double> twice_m = smoothed([&](const Foot& foot) {
-    double value_m = 0;
-    for (int k = 0; k < 3; ++k) value_m += foot.shares[k] * once_m[foot.corners[k]];
-    return value_m;
+std::vector<double> SurfaceWeights::taken_m2(std::span<const double> once_m) const {
+  std::vector<double> twice_m(once_m.size(), 0.0);
+  parallel_for(twice_m.size(), [&](std::size_t v) {
+    for (const WeighedPoint& p : at(v)) {
+      const Foot& foot = feet_[p.point];
+      for (int k = 0; k < 3; ++k) twice_m[v] += p.weight * foot.shares[k] * once_m[foot.corners[k]];
+    }
   });
   const KdTree tree(surface_.vertices);
   std::vector<double> taken(once_m.size());

@@ -37,7 +37,10 @@ class SurfaceWeights {
   // smoothed once more (Tukey's twicing, 1977), hold R (1 - R), and smoothed twice R^2 (1 - R): the
   // ratio of their squares raises the first to what was taken, at most fourfold, for waves that are
   // halved. What noise leaves in them counts, too.
-  std::vector<double> taken_m2() const;
+  // `once_m`: the mean residual at each vertex.
+  std::vector<double> taken_m2(std::span<const double> once_m) const;
+  // Of points as at() gives them.
+  double mean_residual_m(std::span<const WeighedPoint> points) const;
 
  private:
   // Where a point lies on the surface: nearest to it.
@@ -48,8 +51,6 @@ class SurfaceWeights {
   };
   Foot foot_of(std::size_t point, const ClosestPoint& closest) const;
   double trust(std::uint32_t point, std::size_t vertex) const;
-  template <class ValueAt>
-  std::vector<double> smoothed(ValueAt&& value_at) const;
 
   const Mesh& surface_;
   std::span<const double> smoothing_m_;

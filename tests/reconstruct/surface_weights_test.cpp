@@ -83,8 +83,11 @@ TEST(SurfaceWeights, TellWhatSmoothingTook) {
   };
   for (auto& vertex : square.surface.vertices) vertex.z() = left * wave(vertex);
   for (auto& point : cloud.points) point.z() = wave(point);
-  const std::vector<double> taken =
-      SurfaceWeights(square.surface, square.vertex_smoothing_m, cloud).taken_m2();
+  const SurfaceWeights weights(square.surface, square.vertex_smoothing_m, cloud);
+  std::vector<double> once_m;
+  for (std::size_t v = 0; v < square.surface.vertices.size(); ++v)
+    once_m.push_back(weights.mean_residual_m(weights.at(v)));
+  const std::vector<double> taken = weights.taken_m2(once_m);
   double mean = 0, count = 0, truth = 0;
   for (std::size_t v = 0; v < taken.size(); ++v) {
     const Eigen::Vector3d& at = square.surface.vertices[v];
