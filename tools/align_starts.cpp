@@ -94,6 +94,10 @@ MultiviewResult of_all(MultiviewResult result, const Starts& starts, std::size_t
     edge.source = starts.scans[edge.source];
     edge.target = starts.scans[edge.target];
   }
+  for (CommonCovariance& couple : result.covariances_between) {
+    couple.first = starts.scans[couple.first];
+    couple.second = starts.scans[couple.second];
+  }
   for (std::size_t i = 0; i < starts.found.size(); ++i)
     if (starts.found[i].outcome == GlobalOutcome::no_overlap)
       result.scans[i].stop = Stop::no_correspondences;

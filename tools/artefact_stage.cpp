@@ -8,9 +8,12 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
+#include "libscan/acquire/disparity_refinement.h"
+#include "libscan/acquire/window_bias.h"
 #include "libscan/core/error.h"
 #include "libscan/core/median.h"
 #include "libscan/verify/artefacts.h"
@@ -192,7 +195,30 @@ bool last_is_resolved(const WaveSeries& series, const synth::Artefacts& sized) {
          resolves([](const BodyPoints& b) -> const Points& { return b.drawn.front(); });
 }
 
-WaveSeries wave_series(Bench& bench, const synth::Artefacts& sized, synth::WaveAxis axis) {
+// What the scanner's way of reading its images leaves of waves of a period at a depth: the windows
+// of stereo matching. Others read each ray by itself.
+double reading_transfer(const Recipe& recipe, double period_m, double depth_m) {
+  const auto* pair = std::get_if<synth::StereoPair>(&recipe.scanner);
+  if (!pair) return 1;
+  const int window_px = decoding::refinement_window_px(recipe.acquire.stereo.block_px);
+  return decoding::window_transfer(period_m * pair->calibration.focal_px / depth_m, window_px / 2);
+}
+
+// Draws know the noise of each ray alone: takes from their waves what the reading does.
+void flatten_draws(const Recipe& recipe, WaveSeries& series) {
+  const double period_m = series.periods_m.back(),
+               height_m = synth::wave_amplitude_m(period_m) *
+                          (1 - reading_transfer(recipe, period_m,
+                                                series.scanner_from_plate.translation().z()));
+  const Pose plate_from_scanner = series.scanner_from_plate.inverse();
+  const Eigen::Vector3d up = series.scanner_from_plate.linear().col(2);
+  for (Points& draw : series.bodies.back().drawn)
+    for (Eigen::Vector3d& x : draw)
+      x -= height_m * std::cos(2 * std::numbers::pi * (plate_from_scanner * x).x() / period_m) * up;
+}
+
+WaveSeries wave_series(const Recipe& recipe, Bench& bench, const synth::Artefacts& sized,
+                       synth::WaveAxis axis) {
   WaveSeries series;
   const char* test = axis == synth::WaveAxis::x ? "waves along x" : "waves along y";
   for (int i = 0; i < 17; ++i) {
@@ -201,14 +227,16 @@ WaveSeries wave_series(Bench& bench, const synth::Artefacts& sized, synth::WaveA
     series.scanner_from_plate = in_scanner(bench, plate.front());
     series.periods_m.push_back(period_m);
     series.bodies.push_back(bench.scanned(test, {plate}, counts_anywhere)[0][0]);
+    flatten_draws(recipe, series);
     if (!last_is_resolved(series, sized)) break;
   }
   return series;
 }
 
-void test_waves(std::vector<SheetLine>& sheet, Bench& bench, const synth::Artefacts& sized) {
-  const std::array series = {wave_series(bench, sized, synth::WaveAxis::x),
-                             wave_series(bench, sized, synth::WaveAxis::y)};
+void test_waves(std::vector<SheetLine>& sheet, const Recipe& recipe, Bench& bench,
+                const synth::Artefacts& sized) {
+  const std::array series = {wave_series(recipe, bench, sized, synth::WaveAxis::x),
+                             wave_series(recipe, bench, sized, synth::WaveAxis::y)};
   add_lines(sheet, {series[0].bodies}, [&](const Select& select) {
     std::array<std::vector<WavePlate>, 2> plates;
     for (std::size_t k = 0; k < series.size(); ++k)
@@ -230,7 +258,7 @@ std::vector<SheetLine> artefact_sheet(const Recipe& recipe, Console& console) {
   test_balls(sheet, bench, sized);
   test_faces(sheet, bench, sized);
   test_cylinders(sheet, bench, sized);
-  test_waves(sheet, bench, sized);
+  test_waves(sheet, recipe, bench, sized);
   test_merged_views(sheet, bench, sized);
   test_repeatability(sheet, bench, sized);
   return sheet;

@@ -8,6 +8,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
+#include "libscan/io/stated_poses_file.h"
 #include "libscan/io/surface_file.h"
 #include "libscan/reconstruct/dual_mesh.h"
 #include "tools/commands.h"
@@ -54,12 +55,14 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   check_output(output);
   const auto scans = read_scans_with_normals(inputs, console);
   std::vector<Pose> poses(scans.size(), Pose::Identity());
+  StatedPoses stated;
   if (!arguments.poses.empty()) {
     const auto named = read_poses(arguments.poses);
     if (named.size() != scans.size())
       throw Error(Trouble::input, arguments.poses + ": has " + std::to_string(named.size()) +
                                       " poses for " + std::to_string(scans.size()) + " scans");
     for (std::size_t i = 0; i < scans.size(); ++i) poses[i] = named[i].pose;
+    if (arguments.poses.ends_with(".json")) stated = read_stated_poses(arguments.poses);
   }
   ReconstructSettings settings;
   const auto& names = reconstruct_method_names();
@@ -73,8 +76,8 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   settings.decimate_m = arguments.decimate_m;
   settings.thin_m = arguments.thin_m;
 
-  const SurfaceResult result =
-      make_surface(joined(scans, poses), joined_viewpoints(scans, poses), settings, console);
+  const SurfaceResult result = make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
+                                            common_errors(scans, stated), settings, console);
   write_supported_mesh(output, supported(result));
   const auto json = surface_json(result);
   if (settings.method == ReconstructMethod::automatic)
@@ -120,7 +123,8 @@ Action reconstruct_command(CommandLine& line) {
              "ssd: most; cells are not narrower than box / 2^depth");
   line.number("--memory", arguments->memory_gib, 0.01, 1e4,
               "ssd: most, GiB; what needs more is solved part by part and blended");
-  line.option("--poses", arguments->poses, "a pose for each input, in their order");
+  line.option("--poses", arguments->poses,
+              "a pose for each input, in their order; an alignment.json tells their errors, too");
   line.flag("--sharp", arguments->sharp, "put edges and corners back; for points of little noise");
   line.flag("--quads", arguments->quads,
             "a surface of quads, for ssd, mls, rbf and range-fusion; not for .stl");

@@ -3,26 +3,13 @@
 #include "tools/run_files.h"
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
-#include "libscan/io/json_reader.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
+#include "libscan/io/stated_poses_file.h"
 
 namespace scan {
-namespace {
-
-StatedPose stated_pose(const nlohmann::json& scan) {
-  StatedPose stated;
-  for (int row = 0; row < 6; ++row)
-    for (int column = 0; column < 6; ++column)
-      stated.covariance(row, column) = scan.at("covariance").at(row).at(column).get<double>();
-  for (int k = 0; k < 3; ++k) stated.centre(k) = scan.at("covariance_centre_m").at(k).get<double>();
-  return stated;
-}
-
-}  // namespace
 
 std::string scan_name(std::size_t index) {
   char text[24];
@@ -61,19 +48,9 @@ std::vector<Pose> read_run_poses(const std::filesystem::path& run) {
   return poses;
 }
 
-std::vector<std::optional<StatedPose>> read_run_stated_poses(const std::filesystem::path& run) {
+StatedPoses read_run_stated_poses(const std::filesystem::path& run) {
   const auto path = run / "alignment.json";
-  if (!std::filesystem::exists(path)) return {};
-  std::vector<std::optional<StatedPose>> stated;
-  const nlohmann::json alignment = read_json(path);
-  try {
-    for (const auto& scan : alignment.at("scans"))
-      stated.push_back(scan.at("covariance").is_null() ? std::nullopt
-                                                       : std::optional(stated_pose(scan)));
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(Trouble::input, path.string() + ": is not an alignment (" + error.what() + ")");
-  }
-  return stated;
+  return std::filesystem::exists(path) ? read_stated_poses(path) : StatedPoses{};
 }
 
 }  // namespace scan

@@ -4,12 +4,11 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "libscan/core/scan.h"
-#include "libscan/verify/stated_uncertainty.h"
+#include "libscan/core/stated_poses.h"
 
 namespace scan {
 
@@ -27,8 +26,8 @@ std::vector<Scan> read_run_scans(const std::filesystem::path& run);
 // The poses in poses.tum, one per scan.
 std::vector<Pose> read_run_poses(const std::filesystem::path& run);
 
-// The covariances in alignment.json, none for scans without; empty if the file is not there: the
+// The covariances in alignment.json; empty if the file is not there: the
 // poses were not estimated. scan::Error (input) if it is broken.
-std::vector<std::optional<StatedPose>> read_run_stated_poses(const std::filesystem::path& run);
+StatedPoses read_run_stated_poses(const std::filesystem::path& run);
 
 }  // namespace scan

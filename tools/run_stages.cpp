@@ -93,8 +93,9 @@ void align_run(const std::filesystem::path& run, const Recipe& recipe, Console& 
 void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Console& console) {
   const std::vector<Scan> scans = read_run_scans(run);
   const std::vector<Pose> poses = read_run_poses(run);
-  const SurfaceResult result = make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
-                                            recipe.reconstruct, console);
+  const SurfaceResult result =
+      make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
+                   common_errors(scans, read_run_stated_poses(run)), recipe.reconstruct, console);
   write_supported_mesh(run / "surface.ply", supported(result));
   write_json(run / "reconstruction.json", surface_json(result));
 }

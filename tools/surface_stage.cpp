@@ -11,7 +11,7 @@ namespace scan {
 namespace {
 
 void leave_out_large_sigma(PointCloud& cloud, std::vector<Eigen::Vector3d>& viewpoints,
-                           double max_sigma_m) {
+                           CommonErrors& common, double max_sigma_m) {
   std::vector<std::uint32_t> kept;
   std::vector<Eigen::Vector3d> kept_viewpoints;
   for (std::uint32_t i = 0; i < cloud.size(); ++i)
@@ -23,6 +23,7 @@ void leave_out_large_sigma(PointCloud& cloud, std::vector<Eigen::Vector3d>& view
     throw Error(Trouble::computation,
                 "no point has a sigma of at most " + readable_length(max_sigma_m) + " (max_sigma)");
   cloud = subset(cloud, kept);
+  common = subset(common, kept);
   viewpoints = std::move(kept_viewpoints);
 }
 
@@ -41,17 +42,16 @@ void tell_of_points(const SurfaceResult& result, Console& console) {
 }  // namespace
 
 SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpoints,
-                           const ReconstructSettings& settings, Console& console) {
+                           CommonErrors common, const ReconstructSettings& settings,
+                           Console& console) {
   if (settings.quads && settings.decimate_m > 0)
     throw Error(Trouble::usage, "decimate: merges triangles, which quads are not",
                 "leave out one of quads and decimate");
   if (settings.max_sigma_m > 0 && !cloud.sigma_m.empty())
-    leave_out_large_sigma(cloud, viewpoints, settings.max_sigma_m);
-  if (settings.thin_m > 0) {
-    cloud = voxel_grid(cloud, settings.thin_m);
-    viewpoints.clear();  // a cube's mean was seen from several places
-  }
-  SurfaceResult result = reconstruct(cloud, viewpoints,
+    leave_out_large_sigma(cloud, viewpoints, common, settings.max_sigma_m);
+  const bool thin = settings.thin_m > 0;
+  if (thin) viewpoints.clear();  // a cube's mean was seen from several places
+  SurfaceResult result = reconstruct(thin ? voxel_grid(cloud, settings.thin_m) : cloud, viewpoints,
                                      {.method = settings.method,
                                       .ssd = settings.ssd,
                                       .sharp = settings.sharp,
@@ -59,6 +59,7 @@ SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpo
                                      console.progress());
   console.time("reconstruct", result.cost.seconds);
   tell_of_points(result, console);
+  add_standard_errors(result, cloud, common);
   if (settings.trim_m > 0) trim(result, settings.trim_m);
   if (result.surface.triangles.empty())
     throw Error(Trouble::computation, "nothing of the surface is within " +

@@ -4,16 +4,18 @@
 #pragma once
 
 #include "libscan/io/surface_file.h"
-#include "libscan/reconstruct/surface_result.h"
+#include "libscan/reconstruct/surface_uncertainty.h"
 #include "tools/console.h"
 #include "tools/recipe.h"
 
 namespace scan {
 
 // Leaves out points with too large a sigma, thins, reconstructs, trims and decimates. The cloud is
-// in the world frame; `viewpoints` holds where the scanner of each point stood, or is empty.
+// in the world frame; `viewpoints` holds where the scanner of each point stood, or is empty;
+// `common` is what its points' errors share.
 SurfaceResult make_surface(PointCloud cloud, std::vector<Eigen::Vector3d> viewpoints,
-                           const ReconstructSettings& settings, Console& console);
+                           CommonErrors common, const ReconstructSettings& settings,
+                           Console& console);
 
 // The surface with what its vertices know, as it is written.
 SupportedMesh supported(const SurfaceResult& result);

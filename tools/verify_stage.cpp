@@ -61,10 +61,11 @@ std::vector<Measurement> measure_poses(const RunResult& result, const Truth& tru
           is, should, felt,
           corners_of(box.sizes().allFinite() ? box
                                              : bounds_of(in_true_world(result, truth).vertices))));
-  if (!result.stated_poses.empty())
-    add(figures, stated_uncertainty(
-                     "pose", normalised_pose_errors(is, should, result.stated_poses, result.anchor),
-                     "scans with a covariance, relative to the anchor"));
+  if (!result.stated_poses.scans.empty())
+    add(figures,
+        stated_uncertainty(
+            "pose", normalised_pose_errors(is, should, result.stated_poses.scans, result.anchor),
+            "scans with a covariance, relative to the anchor"));
   return figures;
 }
 
@@ -100,7 +101,8 @@ std::vector<Eigen::Vector3d> corners_of(const Bounds& box) {
   return corners;
 }
 
-std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueSurface& truth) {
+std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueSurface& truth,
+                                       const Pose& by_anchor) {
   std::vector<Measurement> figures = size_error(surface.mesh, truth);
   add(figures, topology(surface.mesh));
   if (auto crossings = self_intersection(surface.mesh)) figures.push_back(std::move(*crossings));
@@ -110,11 +112,13 @@ std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueS
     spacings.push_back(surface.support_m[i] / surface.data_spacing_m[i]);
   figures.push_back(unsupported_area(surface.mesh, spacings, supported_within_spacings));
   if (surface.standard_error_m.empty()) return figures;
-  add(figures, stated_uncertainty("surface",
-                                  normalised_deviations(deviations_m(surface.mesh.vertices, truth),
-                                                        surface.standard_error_m, spacings,
-                                                        supported_within_spacings),
-                                  "supported vertices; errors of the poses count"));
+  const Mesh moved = transformed(by_anchor, surface.mesh);
+  add(figures,
+      stated_uncertainty(
+          "surface",
+          normalised_deviations(deviations_m(moved.vertices, truth), surface.standard_error_m,
+                                spacings, supported_within_spacings),
+          "supported vertices with a standard error, the anchor's pose held right"));
   return figures;
 }
 
@@ -139,7 +143,14 @@ std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth
     options.seen_distance_m = settings.seen_distance_m;
   }
   std::vector<Measurement> measurements = surface_error(surface.mesh, truth.surface, options);
-  add(measurements, measure_shape(surface, truth.surface));
+  // Poses that were not estimated are what they are.
+  const std::vector<Pose> should = true_poses(truth);
+  const Pose by_anchor = result.stated_poses.scans.empty()
+                             ? Pose::Identity()
+                             : should[result.anchor] *
+                                   result.world_from_scan[result.anchor].inverse() *
+                                   true_world_from_world(result, truth).inverse();
+  add(measurements, measure_shape(surface, truth.surface, by_anchor));
   add(measurements, measure_poses(result, truth));
   add(measurements, measure_ranges(result.scans, truth));
   return measurements;

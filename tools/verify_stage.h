@@ -19,15 +19,17 @@ struct RunResult {
   std::vector<Scan> scans;            // scanner frames
   std::vector<Pose> world_from_scan;  // as aligned
   SupportedMesh surface;
-  std::vector<std::optional<StatedPose>> stated_poses = {};  // one per scan
-  std::size_t anchor = 0;                                    // the scan that they are relative to
+  StatedPoses stated_poses = {};
+  std::size_t anchor = 0;  // the scan that they are relative to
 };
 
 void add(std::vector<Measurement>& to, std::vector<Measurement> more);
 
 // Sizes, topology, self-intersections and, where the vertices know them, unsupported area and the
-// honesty of the standard errors.
-std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueSurface& truth);
+// honesty of the standard errors. These hold the scan right that poses are relative to: for them
+// the surface is moved by `by_anchor`.
+std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueSurface& truth,
+                                       const Pose& by_anchor = Pose::Identity());
 
 // The corners of a box: where target registration errors are felt.
 std::vector<Eigen::Vector3d> corners_of(const Bounds& box);

@@ -192,7 +192,7 @@ RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   RefinedDisparity result{disparity_px, Image<float>(left.width, left.height, unknown),
                           Image<float>(left.width, left.height, unknown)};
-  const int half = block_px / 2 + 1;
+  const int half = refinement_window_px(block_px) / 2;
   parallel_for(disparity_px.pixels.size(), [&](std::size_t i) {
     const double start = disparity_px.pixels[i];
     if (std::isnan(start)) return;

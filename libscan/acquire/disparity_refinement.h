@@ -26,6 +26,10 @@ struct RefinedDisparity {
 // sigma: 1 / sigma^2 = sum R'^2 / s^2 + 1 / match_sigma_px^2 with the variance s^2 of the
 // residuals, never below the rounding of both images (1/6). It holds the images' noise, not a
 // calibration error.
+// Width of that window, px.
+inline int refinement_window_px(int block_px) {
+  return 2 * (block_px / 2 + 1) + 1;
+}
 RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                         const Image<float>& disparity_px, int block_px, double match_sigma_px);
 

@@ -191,6 +191,8 @@ Scan acquire_stereo(const ImagePair& pair, const StereoOptions& options) {
   Scan scan = points_from(match(pair, options), pair.calibration);
   for (std::size_t i = 0; i < scan.ray.size(); ++i)
     scan.cloud.intensity[i] = pair.left.pixels[scan.ray[i]];
+  const auto window = static_cast<std::uint32_t>(decoding::refinement_window_px(options.block_px));
+  scan.noise_window = {window, window};
   return scan;
 }
 

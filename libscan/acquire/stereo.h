@@ -37,6 +37,7 @@ DisparityMap match(const ImagePair& pair, const StereoOptions& options = {});
 // disparity within three sigma of infinity (d + doffs = 0), or beyond: undetermined.
 Scan points_from(const DisparityMap& map, const StereoCalibration& calibration);
 
+// Neighbours share the noise of the windows that their matches were refined over.
 Scan acquire_stereo(const ImagePair& pair, const StereoOptions& options = {});
 
 }  // namespace scan

@@ -3,6 +3,7 @@
 #include "libscan/acquire/window_bias.h"
 
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace scan::decoding {
@@ -12,6 +13,12 @@ namespace {
 // taking the shift away makes the noise 1 + 4 c times as large: 1.06 for windows of 7.
 constexpr int reach_in_halves = 4;
 constexpr double steepest_px = 0.5;  // per pixel
+
+// Of the second differences' sum.
+double share_of(int half) {
+  const int reach = reach_in_halves * half;
+  return half * (half + 1) / (6.0 * reach * reach);
+}
 
 // Disparity at a place of the same surface less that at its middle; none off the image or surface.
 std::optional<double> step_to(const Image<float>& disparity_px, int column, int row, int dx,
@@ -27,7 +34,7 @@ std::optional<double> step_to(const Image<float>& disparity_px, int column, int 
 
 WindowShift window_shift(const Image<float>& disparity_px, int column, int row, int half) {
   const int reach = reach_in_halves * half;
-  const double share = half * (half + 1) / (6.0 * reach * reach);
+  const double share = share_of(half);
   WindowShift result;
   for (const auto& [dx, dy] : {std::pair(reach, 0), std::pair(0, reach)}) {
     const auto before = step_to(disparity_px, column, row, -dx, -dy);
@@ -37,6 +44,14 @@ WindowShift window_shift(const Image<float>& disparity_px, int column, int row, 
     result.own_share += 2 * share;
   }
   return result;
+}
+
+double window_transfer(double period_px, int half) {
+  const double wave = 2 * std::numbers::pi / period_px;  // rad per pixel
+  double mean = 1;
+  for (int x = 1; x <= half; ++x) mean += 2 * std::cos(wave * x);
+  const double raised = 1 + 2 * share_of(half) * (1 - std::cos(wave * reach_in_halves * half));
+  return mean / (2 * half + 1) * raised;
 }
 
 }  // namespace scan::decoding

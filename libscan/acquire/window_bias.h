@@ -22,4 +22,9 @@ struct WindowShift {
 // before that: at NaN, or a step of more than half a pixel per pixel.
 WindowShift window_shift(const Image<float>& disparity_px, int column, int row, int half);
 
+// What windows leave of a wave of the disparity along a row or a column, their bias taken away: the
+// mean over the window (Dirichlet's kernel), and by how much the second differences above, of such
+// means, raise it.
+double window_transfer(double period_px, int half);
+
 }  // namespace scan::decoding

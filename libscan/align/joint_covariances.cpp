@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "libscan/align/joint_refinement.h"
 #include "libscan/align/joint_solver.h"
@@ -64,28 +65,56 @@ JointEntries shared_scatter(const JointSystem& system, std::span<const JointForm
   return system.scatter(system.pulls_by_place(details, factors));
 }
 
+// Where the covariances of the scans and of their couples stand in the system: the scans first.
+struct CovarianceBlocks {
+  std::vector<std::pair<std::size_t, std::size_t>> scans;
+  std::vector<BlockAt> places;
+};
+
+CovarianceBlocks covariance_blocks(const JointSystem& system, std::span<const JointForm> forms,
+                                   std::size_t scans, const JointBasis& weak) {
+  std::set<std::pair<std::size_t, std::size_t>> couples;
+  for (const JointForm& form : forms) couples.insert(std::minmax(form.source, form.target));
+  std::vector<bool> known(scans);
+  CovarianceBlocks blocks;
+  const auto add = [&](std::size_t i, std::size_t j) {
+    blocks.scans.emplace_back(i, j);
+    blocks.places.emplace_back(system.row(i) / 6, system.row(j) / 6);
+  };
+  for (std::size_t i = 0; i < scans; ++i) {
+    known[i] = system.has(i) && weak_motions_of(i, weak).cols() == 0;
+    if (known[i]) add(i, i);
+  }
+  for (const auto& [i, j] : couples)
+    if (known[i] && known[j]) add(i, j);
+  return blocks;
+}
+
 }  // namespace
 
-std::vector<std::optional<Matrix6>> joint_covariances(std::span<const JointForm> forms,
-                                                      std::span<const JointDetail> details,
-                                                      const JointFrame& frame,
-                                                      const JointBasis& weak) {
-  std::vector<std::optional<Matrix6>> covariances(frame.centres.size());
-  for (std::size_t i = 0; i < covariances.size(); ++i)
-    if (!frame.free[i]) covariances[i] = Matrix6::Zero();
+JointCovariances joint_covariances(std::span<const JointForm> forms,
+                                   std::span<const JointDetail> details, const JointFrame& frame,
+                                   const JointBasis& weak) {
+  JointCovariances result;
+  result.of_scan.resize(frame.centres.size());
+  for (std::size_t i = 0; i < result.of_scan.size(); ++i)
+    if (!frame.free[i]) result.of_scan[i] = Matrix6::Zero();
   const JointSystem system(forms, frame);
-  if (system.rows() == 0) return covariances;
+  if (system.rows() == 0) return result;
   const WithholdingSolver solver(matrix_of(system, system.sum_of(details)), system.reduced(weak));
   const JointMatrix scatter = matrix_of(system, shared_scatter(system, forms, details, weak));
-  const std::vector<Matrix6> blocks = solver.sandwich_blocks(scatter);
+  const CovarianceBlocks wanted = covariance_blocks(system, forms, frame.centres.size(), weak);
+  const std::vector<Matrix6> blocks = solver.sandwich_blocks(scatter, wanted.places);
   Matrix6 units = Matrix6::Identity();
   units.bottomRightCorner<3, 3>() *= frame.size_m;
-  for (std::size_t i = 0; i < covariances.size(); ++i) {
-    if (!system.has(i) || weak_motions_of(i, weak).cols() > 0) continue;
-    const Matrix6& covariance = blocks[std::size_t(system.row(i) / 6)];
-    covariances[i] = units * (0.5 * (covariance + covariance.transpose())) * units;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const auto& [i, j] = wanted.scans[k];
+    if (i == j)
+      result.of_scan[i] = units * (0.5 * (blocks[k] + blocks[k].transpose())) * units;
+    else
+      result.between.push_back({i, j, units * blocks[k] * units});
   }
-  return covariances;
+  return result;
 }
 
 }  // namespace scan

@@ -9,7 +9,6 @@
 
 #include "libscan/align/joint_guesses.h"
 #include "libscan/align/joint_motion.h"
-#include "libscan/align/joint_refinement.h"
 #include "libscan/align/overlaps.h"
 #include "libscan/align/rims.h"
 #include "libscan/core/median.h"
@@ -205,14 +204,15 @@ void Refinement::summarise(const std::vector<JointDetail>& details) {
     if (out_.overlapping.empty() || out_.overlapping.back() != couple)
       out_.overlapping.push_back(couple);
   }
-  const auto covariances = joint_covariances(forms_, details, frame(), weak_);
+  JointCovariances covariances = joint_covariances(forms_, details, frame(), weak_);
+  out_.covariances_between = std::move(covariances.between);
   for (std::size_t i = 0; i < paired.size(); ++i) {
     JointScan& scan = out_.scans[i];
     const auto count = static_cast<double>(std::count(paired[i].begin(), paired[i].end(), true));
     scan.paired_fraction = paired[i].empty() ? 0 : count / double(paired[i].size());
     scan.rms_m = weights[i] > 0 ? std::sqrt(squares[i] / weights[i]) : 0;
     scan.weak = weak_motions_of(i, weak_);
-    scan.covariance = covariances[i];
+    scan.covariance = covariances.of_scan[i];
     scan.still = scan.still || i == anchor_;
   }
 }

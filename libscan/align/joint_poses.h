@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "libscan/align/observability.h"
+#include "libscan/align/joint_refinement.h"
 #include "libscan/align/scan_edges.h"
 
 namespace scan {
@@ -27,6 +27,7 @@ struct JointPoses {
   std::vector<Pose> world_from_local;
   std::vector<JointScan> scans;
   std::vector<std::pair<std::size_t, std::size_t>> overlapping;  // the couples that count
+  std::vector<CommonCovariance> covariances_between;
   double size_m = 1;
   int rounds = 0;
 };

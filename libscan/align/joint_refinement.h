@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libscan/align/joint_pairs.h"
+#include "libscan/core/stated_poses.h"
 
 namespace scan {
 
@@ -50,15 +51,19 @@ std::vector<RelativeStep> relative_steps(std::span<const JointForm> forms, const
 // other scans'.
 TwistBasis weak_motions_of(std::size_t scan, const JointBasis& weak);
 
+struct JointCovariances {
+  std::vector<std::optional<Matrix6>> of_scan;
+  std::vector<CommonCovariance> between;  // of all couples of scans that have one and are free
+};
+
 // Covariance of each scan's twist (rad, m), B^-1 M B^-1 with the curvature B and the scatter M of
 // the pulls, summed over all couples at one place first: so noise that the couples of one scan, or
 // both directions of a couple, have in common counts (Huber 1967; Liang and Zeger 1986). What
 // places share is a number for each scan (shared_noise.h), by whose root its pulls are longer: a
 // scatter of patches wide enough to hold it would have so few that its inverse is too large by
 // half. None for scans that are free and in no form or weak.
-std::vector<std::optional<Matrix6>> joint_covariances(std::span<const JointForm> forms,
-                                                      std::span<const JointDetail> details,
-                                                      const JointFrame& frame,
-                                                      const JointBasis& weak);
+JointCovariances joint_covariances(std::span<const JointForm> forms,
+                                   std::span<const JointDetail> details, const JointFrame& frame,
+                                   const JointBasis& weak);
 
 }  // namespace scan

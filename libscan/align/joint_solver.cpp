@@ -5,7 +5,6 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
-#include "libscan/align/selected_inverse.h"
 #include "libscan/core/error.h"
 
 namespace scan {
@@ -106,17 +105,20 @@ Eigen::MatrixXd WithholdingSolver::solve(const Eigen::MatrixXd& b) const {
 
 // With G = F - R K R^T, F the factor's inverse, R = F W and K = (W^T R)^-1, G M G is F M F less
 // R K U^T and its transpose, U = F M R, plus R K (R^T M R) K R^T.
-std::vector<Matrix6> WithholdingSolver::sandwich_blocks(const JointMatrix& m) const {
-  if (blocks_) return scan::sandwich_blocks(held_, projector_ * m * projector_);
-  std::vector<Matrix6> blocks = scan::sandwich_blocks(held_, m);
+std::vector<Matrix6> WithholdingSolver::sandwich_blocks(const JointMatrix& m,
+                                                        std::span<const BlockAt> places) const {
+  if (blocks_) return scan::sandwich_blocks(held_, projector_ * m * projector_, places);
+  std::vector<Matrix6> blocks = scan::sandwich_blocks(held_, m, places);
   if (weak_.cols() == 0) return blocks;
   const Eigen::MatrixXd spread = m * reply_, u = factor_->solve(spread);
   const Eigen::MatrixXd both = response_.solve(reply_.transpose());  // K R^T
   const Eigen::MatrixXd inner = reply_.transpose() * spread;
+  const auto columns = [&](std::size_t k) { return both.middleCols<6>(6 * Eigen::Index(k)); };
+  const auto rows = [&](std::size_t k) { return u.middleRows<6>(6 * Eigen::Index(k)); };
   for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const Eigen::MatrixXd own = both.middleCols<6>(6 * Eigen::Index(k));
-    const Matrix6 cross = u.middleRows<6>(6 * Eigen::Index(k)) * own;
-    blocks[k] += own.transpose() * inner * own - cross - cross.transpose();
+    const auto& [i, j] = places[k];
+    blocks[k] += columns(i).transpose() * inner * columns(j) - rows(i) * columns(j) -
+                 (rows(j) * columns(i)).transpose();
   }
   return blocks;
 }

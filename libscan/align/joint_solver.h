@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libscan/align/joint_system.h"
+#include "libscan/align/selected_inverse.h"
 
 namespace scan {
 
@@ -44,8 +45,8 @@ class WithholdingSolver {
  public:
   WithholdingSolver(const JointMatrix& a, Eigen::MatrixXd weak);
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
-  // Of G M G along the diagonal, G b being the solution of A x = b.
-  std::vector<Matrix6> sandwich_blocks(const JointMatrix& m) const;
+  // Those blocks of G M G, G b being the solution of A x = b.
+  std::vector<Matrix6> sandwich_blocks(const JointMatrix& m, std::span<const BlockAt> places) const;
 
  private:
   Eigen::MatrixXd weak_;

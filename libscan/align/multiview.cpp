@@ -190,6 +190,7 @@ void Alignment::refine() {
   poses_ = joint.world_from_local;
   result_.rounds = joint.rounds;
   result_.pairs_used = joint.overlapping.size();
+  result_.covariances_between = joint.covariances_between;
   report(joint);
   measure_agreement(joint);
 }

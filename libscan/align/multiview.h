@@ -12,6 +12,7 @@
 #include "libscan/align/icp.h"
 #include "libscan/core/progress.h"
 #include "libscan/core/scan.h"
+#include "libscan/core/stated_poses.h"
 
 namespace scan {
 
@@ -63,9 +64,10 @@ struct ScanPose {
 };
 
 struct MultiviewResult {
-  std::vector<ScanPose> scans;  // in the order of the input
-  std::vector<ScanEdge> edges;  // by source, then target
-  std::size_t pairs_used = 0;   // pairs of scans in the joint step
+  std::vector<ScanPose> scans;                        // in the order of the input
+  std::vector<ScanEdge> edges;                        // by source, then target
+  std::vector<CommonCovariance> covariances_between;  // of scans that see the same
+  std::size_t pairs_used = 0;                         // pairs of scans in the joint step
   int rounds = 0;
   Stop stop = Stop::too_few_points;
   Cost cost;

@@ -33,14 +33,22 @@ struct Entry {
 };
 using Columns = std::vector<std::vector<Entry>>;
 
-// The lower half of the permuted A with the derivative M, the places of all blocks along the
-// diagonal among its pattern.
+// The lower half of the permuted A with the derivative M, the wanted blocks among its pattern.
 struct Lower {
   std::vector<Dual> diagonal;
   Columns columns;
 };
 
-Lower lower_half(const Sparse& a, const Sparse& m, const Eigen::VectorXi& place) {
+// Of the entries of those blocks: calls use(block, row, column).
+template <class Use>
+void each_place(std::span<const BlockAt> blocks, Use&& use) {
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+    for (int i = 0; i < 36; ++i)
+      use(k, 6 * Eigen::Index(blocks[k].first) + i % 6, 6 * Eigen::Index(blocks[k].second) + i / 6);
+}
+
+Lower lower_half(const Sparse& a, const Sparse& m, std::span<const BlockAt> wanted,
+                 const Eigen::VectorXi& place) {
   Lower lower{std::vector<Dual>(std::size_t(a.rows())), Columns(std::size_t(a.rows()))};
   const auto add = [&](Eigen::Index i, Eigen::Index j, const Dual& number) {
     const Eigen::Index row = place[i], column = place[j];
@@ -50,8 +58,11 @@ Lower lower_half(const Sparse& a, const Sparse& m, const Eigen::VectorXi& place)
   for (Eigen::Index j = 0; j < a.cols(); ++j) {
     for (Sparse::InnerIterator at(a, j); at; ++at) add(at.row(), j, {at.value(), 0});
     for (Sparse::InnerIterator at(m, j); at; ++at) add(at.row(), j, {0, at.value()});
-    for (Eigen::Index i = j - j % 6; i < j - j % 6 + 6; ++i) add(i, j, {});
   }
+  each_place(wanted, [&](std::size_t, Eigen::Index i, Eigen::Index j) {
+    add(i, j, {});
+    add(j, i, {});
+  });
   return lower;
 }
 
@@ -134,39 +145,37 @@ Dual entry_of(const Lower& z, Eigen::Index i, Eigen::Index j) {
       ->number;
 }
 
-// Of (A + e M)^-1 and its derivative: calls use(block, row, column, number).
-template <class Use>
-void each_block_entry(const Sparse& a, const Sparse& m, Use&& use) {
+// Those blocks of (A + e M)^-1 or its derivative, as `part` takes them from the numbers.
+template <class Part>
+std::vector<Matrix6> inverted_blocks(const Sparse& a, const Sparse& m,
+                                     std::span<const BlockAt> places, Part&& part) {
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
   const Sparse pattern = a.cwiseAbs() + m.cwiseAbs();
   Eigen::AMDOrdering<int>()(pattern.selfadjointView<Eigen::Lower>(), order);
   // The ordering says which row comes to each place.
   const Eigen::VectorXi place = order.inverse().eval().indices();
-  Lower lower = lower_half(a, m, place);
+  Lower lower = lower_half(a, m, places, place);
   factorise(lower);
   invert(lower);
-  for (Eigen::Index i = 0; i < a.rows(); ++i)
-    for (Eigen::Index j = i - i % 6; j < i - i % 6 + 6; ++j)
-      use(std::size_t(i / 6), i % 6, j % 6, entry_of(lower, place[i], place[j]));
+  std::vector<Matrix6> blocks(places.size());
+  each_place(places, [&](std::size_t k, Eigen::Index i, Eigen::Index j) {
+    blocks[k](i % 6, j % 6) = part(entry_of(lower, place[i], place[j]));
+  });
+  return blocks;
 }
 
 }  // namespace
 
 std::vector<Matrix6> inverse_blocks(const Sparse& a) {
-  std::vector<Matrix6> blocks(std::size_t(a.rows() / 6));
-  each_block_entry(a, Sparse(a.rows(), a.cols()),
-                   [&](std::size_t k, Eigen::Index i, Eigen::Index j, const Dual& number) {
-                     blocks[k](i, j) = number.value;
-                   });
-  return blocks;
+  std::vector<BlockAt> diagonal;
+  for (std::size_t k = 0; k < std::size_t(a.rows() / 6); ++k) diagonal.emplace_back(k, k);
+  return inverted_blocks(a, Sparse(a.rows(), a.cols()), diagonal,
+                         [](const Dual& number) { return number.value; });
 }
 
-std::vector<Matrix6> sandwich_blocks(const Sparse& a, const Sparse& m) {
-  std::vector<Matrix6> blocks(std::size_t(a.rows() / 6));
-  each_block_entry(a, m, [&](std::size_t k, Eigen::Index i, Eigen::Index j, const Dual& number) {
-    blocks[k](i, j) = -number.slope;
-  });
-  return blocks;
+std::vector<Matrix6> sandwich_blocks(const Sparse& a, const Sparse& m,
+                                     std::span<const BlockAt> places) {
+  return inverted_blocks(a, m, places, [](const Dual& number) { return -number.slope; });
 }
 
 }  // namespace scan

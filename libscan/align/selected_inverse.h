@@ -4,6 +4,8 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "libscan/core/pose.h"
@@ -15,9 +17,13 @@ namespace scan {
 // Tinney, CACM 18, 1975), in a time that does not grow with the square of n as n solves would.
 std::vector<Matrix6> inverse_blocks(const Eigen::SparseMatrix<double>& a);
 
-// The same of A^-1 M A^-1, M symmetric: less the derivative of (A + e M)^-1 by e at 0, the
+// Row and column of a 6 x 6 block, counted in blocks.
+using BlockAt = std::pair<std::size_t, std::size_t>;
+
+// Those blocks of A^-1 M A^-1, M symmetric: less the derivative of (A + e M)^-1 by e at 0, the
 // recursion carried through with it.
 std::vector<Matrix6> sandwich_blocks(const Eigen::SparseMatrix<double>& a,
-                                     const Eigen::SparseMatrix<double>& m);
+                                     const Eigen::SparseMatrix<double>& m,
+                                     std::span<const BlockAt> places);
 
 }  // namespace scan

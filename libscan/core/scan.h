@@ -20,9 +20,12 @@ struct RayGrid {
 
 struct Scan {
   std::string name;
-  PointCloud cloud;                                     // scanner frame
-  std::vector<std::uint32_t> ray;                       // index of each point's ray; empty: unknown
-  RayGrid grid;                                         // ray = row * columns + column
+  PointCloud cloud;                // scanner frame
+  std::vector<std::uint32_t> ray;  // index of each point's ray; empty: unknown
+  RayGrid grid;                    // ray = row * columns + column
+  // Rays share noise with those around: that of two is correlated by (1 - rows apart / rows)
+  // (1 - columns apart / columns) of these, as means over windows of so many pixels are.
+  RayGrid noise_window{1, 1};                           // each ray has its own
   std::map<std::string, std::size_t> misses;            // reason -> rays without a point
   Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  // scanner frame: normals face this point
   Pose world_from_scanner_guess = Pose::Identity();

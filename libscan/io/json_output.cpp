@@ -19,6 +19,13 @@ ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
+ordered_json rows_of(const Matrix6& matrix) {
+  ordered_json rows = ordered_json::array();
+  for (const auto& row : matrix.rowwise())
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  return rows;
+}
+
 void add_covariance(const ScanPose& scan, ordered_json& json) {
   for (const char* key :
        {"sigma_rotation_rad", "sigma_translation_m", "covariance", "covariance_centre_m"})
@@ -26,9 +33,7 @@ void add_covariance(const ScanPose& scan, ordered_json& json) {
   if (!scan.covariance) return;
   json["sigma_rotation_rad"] = std::sqrt(scan.covariance->topLeftCorner<3, 3>().trace());
   json["sigma_translation_m"] = std::sqrt(scan.covariance->bottomRightCorner<3, 3>().trace());
-  json["covariance"] = ordered_json::array();
-  for (const auto& row : scan.covariance->rowwise())
-    json["covariance"].push_back(std::vector<double>(row.begin(), row.end()));
+  json["covariance"] = rows_of(*scan.covariance);
   json["covariance_centre_m"] =
       std::vector<double>(scan.covariance_centre.begin(), scan.covariance_centre.end());
 }
@@ -77,7 +82,12 @@ ordered_json alignment_json(std::span<const std::string> files, const MultiviewR
     scans.push_back(scan_pose_json(files[i], result.scans[i]));
   ordered_json pairs = ordered_json::array();
   for (const ScanEdge& edge : result.edges) pairs.push_back(edge_json(files, edge));
+  ordered_json between = ordered_json::array();
+  for (const CommonCovariance& couple : result.covariances_between)
+    between.push_back(
+        {{"scans", {couple.first, couple.second}}, {"covariance", rows_of(couple.covariance)}});
   return {{"scans", scans},
+          {"covariances_between", between},
           {"pairs", pairs},
           {"method", name_of(options.method)},
           {"search", name_of(options.search)},

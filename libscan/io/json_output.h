@@ -26,7 +26,8 @@ nlohmann::ordered_json scan_json(const std::string& file, const Scan& scan);
 // `inlier_fraction_of_source`, `agreement`, `weak_directions`, `sigma_rotation_rad`,
 // `sigma_translation_m`, `covariance` (6 rows: rotation rad, translation m),
 // `covariance_centre_m`}], the last four null where the covariance is unknown; a sigma is the root
-// of the sum of three variances. `pairs`: [{`source`, `target` (files), `accepted`, `stop`,
+// of the sum of three variances. `covariances_between`: [{`scans` (two numbers, from 0),
+// `covariance` (rows: the first's motion)}]. `pairs`: [{`source`, `target` (files), `accepted`, `stop`,
 // `overlap`, `agreement`, `rms_m`}], `method`, `search`, `stop`, `rounds`, `pairs_used`. Throws
 // scan::Error (usage) unless there is one file for each scan.
 nlohmann::ordered_json alignment_json(std::span<const std::string> files,

@@ -65,12 +65,24 @@ Number parse_whole(std::string_view& words, const std::filesystem::path& path) {
   return *number;
 }
 
+// Rows and columns, positive.
+RayGrid parse_window(std::string_view words, const std::filesystem::path& path) {
+  RayGrid window;
+  window.rows = parse_whole<std::uint32_t>(words, path);
+  window.columns = parse_whole<std::uint32_t>(words, path);
+  if (window.rows == 0 || window.columns == 0)
+    fail(path, "comment 'libscan noise_window' must hold 2 positive numbers");
+  return window;
+}
+
 void parse_comment(std::string_view words, Scan& scan, const std::filesystem::path& path) {
   if (take_word(words) != "libscan") return;
   const std::string_view key = take_word(words);
   if (key == "grid") {
     scan.grid.rows = parse_whole<std::uint32_t>(words, path);
     scan.grid.columns = parse_whole<std::uint32_t>(words, path);
+  } else if (key == "noise_window") {
+    scan.noise_window = parse_window(words, path);
   } else if (key == "miss") {
     const auto count = parse_whole<std::size_t>(words, path);
     scan.misses[std::string(words.substr(std::min<std::size_t>(1, words.size())))] += count;
@@ -155,6 +167,9 @@ Ply ply_from(const Scan& scan) {
   if (scan.grid.rows > 0 || scan.grid.columns > 0)
     ply.comments.push_back("libscan grid " + std::to_string(scan.grid.rows) + " " +
                            std::to_string(scan.grid.columns));
+  if (scan.noise_window.rows != 1 || scan.noise_window.columns != 1)
+    ply.comments.push_back("libscan noise_window " + std::to_string(scan.noise_window.rows) + " " +
+                           std::to_string(scan.noise_window.columns));
   for (const auto& [reason, count] : scan.misses)
     ply.comments.push_back("libscan miss " + std::to_string(count) + " " + reason);
   ply.comments.push_back(viewpoint_comment(scan.viewpoint));

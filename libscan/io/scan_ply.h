@@ -4,6 +4,7 @@
 //
 // Beside what ply.h knows of clouds: vertex property `ray`, and comments
 //   libscan grid ROWS COLUMNS
+//   libscan noise_window ROWS COLUMNS (of rays that share noise, see Scan)
 //   libscan miss COUNT REASON
 //   libscan viewpoint X Y Z
 //   libscan world_from_scanner_guess (16 numbers, row by row)

@@ -232,6 +232,7 @@ void carry_over(const Mesh& from, SurfaceResult& result) {
   carry(result.support_m);
   carry(result.data_spacing_m);
   carry(result.standard_error_m);
+  carry(result.vertex_smoothing_m);
 }
 
 }  // namespace

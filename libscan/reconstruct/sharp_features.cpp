@@ -193,10 +193,10 @@ SharpReport sharpen(SurfaceResult& result, std::span<const Eigen::Vector3d> poin
   SplitMesh split = sharpener.split();
   result.surface = std::move(split.mesh);
   result.support_m = distance_to_points(result.surface, points);
-  if (!result.standard_error_m.empty())
-    for (const MeshEdge& from : split.new_between)
-      result.standard_error_m.push_back(
-          std::max(result.standard_error_m[from[0]], result.standard_error_m[from[1]]));
+  for (std::vector<double>* values : {&result.standard_error_m, &result.vertex_smoothing_m})
+    if (!values->empty())
+      for (const MeshEdge& from : split.new_between)
+        values->push_back(std::max((*values)[from[0]], (*values)[from[1]]));
   return sharpener.report();
 }
 

@@ -39,6 +39,7 @@ void add_support(const Samples& samples, const std::vector<double>& length, Surf
   nearest_of_each(tree, vertices, unlimited_m, curve_order(vertices), nearest);
   for (const Neighbour& n : nearest) {
     result.support_m.push_back(samples.box.side_m * std::sqrt(n.distance2_m2));
+    result.vertex_smoothing_m.push_back(samples.box.side_m * length[n.index]);
     result.standard_error_m.push_back(
         samples.box.side_m * samples.sigma[n.index] *
         std::sqrt(posterior_variance(samples.area[n.index], length[n.index])));

@@ -46,9 +46,11 @@ struct SurfaceResult {
   std::vector<double> data_spacing_m;  // per vertex: how far apart the data are there
   // Per vertex: one standard deviation across the surface, from the points' scatter and the
   // smoothing; of the surface beside the nearest point. Points are taken for independent and their
-  // poses for right: errors that a scan's points share are not in it. Empty: the method does not
-  // know.
+  // poses for right, unless add_standard_errors() (surface_uncertainty.h) counts what they share;
+  // infinite where that is not known. Empty: the method does not know.
   std::vector<double> standard_error_m;
+  // Per vertex: the smoothing length beside it; empty: the method has none.
+  std::vector<double> vertex_smoothing_m;
   double finest_cell_m = 0;  // that the surface was cut out of; 0: of none
   Eigen::Vector3d cells_from_m = Eigen::Vector3d::Zero();  // a corner of theirs
   int depth = 0;                                           // of the solution's finest cells

@@ -24,6 +24,7 @@ void keep_only(SurfaceResult& result, const std::vector<char>& keep) {
   keep_of(result.support_m);
   keep_of(result.data_spacing_m);
   keep_of(result.standard_error_m);
+  keep_of(result.vertex_smoothing_m);
 }
 
 std::vector<char> large_components(const Mesh& mesh, double min_fraction) {

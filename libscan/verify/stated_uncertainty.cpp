@@ -84,7 +84,9 @@ NormalisedErrors normalised_deviations(std::span<const double> deviations_m,
                     std::to_string(support_spacings.size()) + " distances to the data");
   NormalisedErrors errors;
   for (std::size_t i = 0; i < deviations_m.size(); ++i) {
-    if (!(standard_errors_m[i] > 0) || !(support_spacings[i] <= most_spacings)) continue;
+    if (!(standard_errors_m[i] > 0 && std::isfinite(standard_errors_m[i])) ||
+        !(support_spacings[i] <= most_spacings))
+      continue;
     const double ratio = deviations_m[i] / standard_errors_m[i];
     errors.squares.push_back(ratio * ratio);
   }

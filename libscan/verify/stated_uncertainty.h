@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libscan/core/point_cloud.h"
+#include "libscan/core/stated_poses.h"
 #include "libscan/verify/truth.h"
 #include "libscan/verify/verdict.h"
 
@@ -35,13 +36,6 @@ std::vector<Measurement> stated_uncertainty(const std::string& what, const Norma
 std::optional<double> normalised_square(const Eigen::Vector3d& error_m,
                                         const Eigen::Matrix3d& covariance_m2);
 
-// What an alignment states of a scan's pose: the covariance of a turn (rad) about `centre` and a
-// shift (m), along the world's axes.
-struct StatedPose {
-  Matrix6 covariance = Matrix6::Zero();
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // world
-};
-
 // Six degrees of freedom: of each scan with a statement, the pose against that of the anchor, whose
 // own pose is held to be right. Throws scan::Error (input) for lists of different lengths and an
 // anchor that is none of them.
@@ -50,9 +44,9 @@ NormalisedErrors normalised_pose_errors(std::span<const Pose> estimated,
                                         std::span<const std::optional<StatedPose>> stated,
                                         std::size_t anchor);
 
-// One degree of freedom: deviations over standard errors, where these are positive and the support
-// (distance to the nearest data over its spacing) is at most `most_spacings`. Throws scan::Error
-// (input) for lists of different lengths.
+// One degree of freedom: deviations over standard errors, where these are positive and finite and
+// the support (distance to the nearest data over its spacing) is at most `most_spacings`. Throws
+// scan::Error (input) for lists of different lengths.
 NormalisedErrors normalised_deviations(std::span<const double> deviations_m,
                                        std::span<const double> standard_errors_m,
                                        std::span<const double> support_spacings,

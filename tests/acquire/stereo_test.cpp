@@ -90,6 +90,8 @@ TEST(Stereo, EveryPixelIsAPointOrAMiss) {
   EXPECT_EQ(scan.grid.rows, std::uint32_t{height});
   EXPECT_EQ(scan.grid.columns, std::uint32_t{width});
   EXPECT_EQ(scan.cloud.intensity.size(), scan.cloud.size());
+  EXPECT_EQ(scan.noise_window.rows, 7u);  // of blocks of 5
+  EXPECT_EQ(scan.noise_window.columns, 7u);
 }
 
 // Left pixels whose partner lies outside the right image, more than a pixel: some 1,600.

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "libscan/acquire/stereo.h"
 #include "tests/acquire/stereo_scene.h"
@@ -42,6 +43,22 @@ TEST(WindowBias, IsTheMeanOverTheWindowLessTheMiddle) {
 TEST(WindowBias, OfAPlaneIsNone) {
   const Image<float> map = map_of([](double x, double y) { return 20 + 0.25 * x - 0.125 * y; });
   EXPECT_EQ(window_shift(map, middle, middle, half).shift_px, 0);
+}
+
+// Means over windows of a sampled wave, and the shift taken from them: the same by sums. To the
+// map's single precision, 1e-6 of 20 px.
+TEST(WindowBias, WavesAreLeftAsTheTransferSays) {
+  for (const double period : {10.0, 16.0, 40.0}) {
+    const double k = 2 * std::numbers::pi / period;
+    const auto blurred = [&](double x, double) {
+      double mean = 0;
+      for (int i = -half; i <= half; ++i) mean += std::cos(k * (x + i)) / (2 * half + 1);
+      return 20 + 0.2 * mean;
+    };
+    const double left =
+        blurred(0, 0) - window_shift(map_of(blurred), middle, middle, half).shift_px;
+    EXPECT_NEAR((left - 20) / 0.2, window_transfer(period, half), 2e-5) << period;
+  }
 }
 
 // A hole to the left, a step below: neither axis is known. At the image's edge the other one is.

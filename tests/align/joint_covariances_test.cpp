@@ -43,12 +43,12 @@ TEST(JointCovariances, AreTheSandwichOfCurvatureAndScatter) {
   std::vector<JointForm> scaled = forms;
   for (JointForm& form : scaled) form.frame.size_m = 3;
   const auto covariances = joint_covariances(scaled, details, frame, JointBasis(12, 0));
-  ASSERT_TRUE(covariances[1]);
+  ASSERT_TRUE(covariances.of_scan[1]);
   Matrix6 units = Matrix6::Identity();
   units.bottomRightCorner<3, 3>() *= 3;
   const Matrix6 expected = share * units * inverse * scatter * inverse * units;
-  EXPECT_LT((*covariances[1] - expected).norm(), 1e-7 * expected.norm());
-  EXPECT_EQ(*covariances[0], Matrix6::Zero());
+  EXPECT_LT((*covariances.of_scan[1] - expected).norm(), 1e-7 * expected.norm());
+  EXPECT_EQ(*covariances.of_scan[0], Matrix6::Zero());
 }
 
 // Scans 1 and 2 in a row, the noise between them shared by places and ten times stronger: what
@@ -72,9 +72,9 @@ TEST(JointCovariances, OfAChainAddUpFromTheAnchor) {
   for (std::size_t k = 0; k < 2; ++k) details[k].curvature = forms[k].a;
   const auto covariances = joint_covariances(forms, details, frame_of(3), JointBasis(18, 0));
   const Matrix6 inverse = forms[0].a.inverse(), link = inverse * scatter * inverse;
-  const double times = covariances[1]->trace() / link.trace();
+  const double times = covariances.of_scan[1]->trace() / link.trace();
   EXPECT_GE(times, 1);
-  EXPECT_LT((*covariances[1] - times * link).norm(), 1e-7 * times * link.norm());
+  EXPECT_LT((*covariances.of_scan[1] - times * link).norm(), 1e-7 * times * link.norm());
 }
 
 // With a motion of two scans together withheld: by Lagrange's equations, whose inverse's first
@@ -104,10 +104,13 @@ TEST(WithholdingSolver, SandwichesWhatIsNotWithheld) {
   const Eigen::MatrixXd expected = reply * scatter * reply;
   const JointMatrix sparse = scatter.sparseView();
   const WithholdingSolver solver(JointMatrix(r.a.sparseView()), system.reduced(weak));
-  const std::vector<Matrix6> blocks = solver.sandwich_blocks(sparse);
-  for (Eigen::Index k = 0; k < 3; ++k)
-    EXPECT_LT((blocks[std::size_t(k)] - expected.block<6, 6>(6 * k, 6 * k)).norm(),
-              1e-7 * expected.norm());
+  const std::vector<BlockAt> places = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {2, 0}};
+  const std::vector<Matrix6> blocks = solver.sandwich_blocks(sparse, places);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto [i, j] = places[k];
+    const Matrix6 block = expected.block<6, 6>(6 * Eigen::Index(i), 6 * Eigen::Index(j));
+    EXPECT_LT((blocks[k] - block).norm(), 1e-7 * expected.norm()) << k;
+  }
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ Scan full_scan() {
   scan.grid = {30, 20};
   scan.misses = {{"no signal", 390}, {"out of range", 10}};
   scan.viewpoint = {0.1, -1.0 / 3, 1e7};
+  scan.noise_window = {7, 5};
   Vector6 twist;
   twist << 0.3, -2, 1, 0.1, 1e3, 1e-9;
   scan.world_from_scanner_guess = exp(twist);
@@ -61,6 +62,8 @@ TEST(ScanFile, PlyBringsBackEverythingToTheBit) {
   EXPECT_EQ(back.grid.columns, scan.grid.columns);
   EXPECT_EQ(back.misses, scan.misses);
   EXPECT_EQ(back.viewpoint, scan.viewpoint);
+  EXPECT_EQ(back.noise_window.rows, 7u);
+  EXPECT_EQ(back.noise_window.columns, 5u);
   EXPECT_EQ(back.world_from_scanner_guess.matrix(), scan.world_from_scanner_guess.matrix());
 }
 
@@ -74,6 +77,7 @@ TEST(ScanFile, PlyOfPointsAloneBringsBackPointsAlone) {
   EXPECT_TRUE(back.ray.empty());
   EXPECT_TRUE(back.misses.empty());
   EXPECT_EQ(back.viewpoint, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(back.noise_window.rows, 1u);
 }
 
 TEST(ScanFile, PcdAndXyzBringBackPointsNormalsAndIntensityToTheBit) {
@@ -118,7 +122,7 @@ TEST(ScanFile, RefusesFilesWithoutAValidPointAndUnknownEndings) {
             std::string::npos);
 }
 
-TEST(ScanFile, RefusesAViewpointThatIsNone) {
+TEST(ScanFile, RefusesAViewpointAndAWindowThatAreNone) {
   const TemporaryFolder folder;
   for (const char* viewpoint : {"0 0", "0 0 x", "0 nan 0"}) {
     write_file(folder / "v.ply", std::string("ply\nformat ascii 1.0\ncomment libscan viewpoint ") +
@@ -128,6 +132,15 @@ TEST(ScanFile, RefusesAViewpointThatIsNone) {
     EXPECT_NE(error_of([&] { read_scan(folder / "v.ply"); }).find("'libscan viewpoint'"),
               std::string::npos)
         << viewpoint;
+  }
+  for (const char* window : {"0 3", "3", "x 1"}) {
+    write_file(folder / "w.ply",
+               std::string("ply\nformat ascii 1.0\ncomment libscan noise_window ") + window +
+                   "\nelement vertex 1\nproperty float x\nproperty float y\n"
+                   "property float z\nend_header\n0 0 1\n");
+    EXPECT_NE(error_of([&] { read_scan(folder / "w.ply"); }).find("comment 'libscan"),
+              std::string::npos)
+        << window;
   }
 }
 

@@ -21,10 +21,17 @@ TEST(RunFiles, StatedPosesComeBackToTheBit) {
   Matrix6 covariance = Matrix6::Identity() / 3;
   covariance(0, 5) = covariance(5, 0) = 1e-7 / 7;
   result.scans[1].covariance = covariance;
+  Matrix6 common = covariance;
+  common(2, 4) = 1.0 / 7;  // needs not be symmetric
+  result.covariances_between = {{1, 2, common}};
   result.scans[1].covariance_centre = Eigen::Vector3d(0.1, -1e6 / 3, 7);
   const std::vector<std::string> files{"a", "b", "c"};
   write_json(folder / "alignment.json", alignment_json(files, result, {}));
-  const auto stated = read_run_stated_poses(folder.path());
+  const auto [stated, between] = read_run_stated_poses(folder.path());
+  ASSERT_EQ(between.size(), 1u);
+  EXPECT_EQ(std::pair(between[0].first, between[0].second),
+            std::pair(std::size_t{1}, std::size_t{2}));
+  EXPECT_EQ(between[0].covariance, common);
   ASSERT_EQ(stated.size(), 3u);
   EXPECT_FALSE(stated[0].has_value());
   ASSERT_TRUE(stated[1].has_value());
@@ -35,7 +42,7 @@ TEST(RunFiles, StatedPosesComeBackToTheBit) {
 
 TEST(RunFiles, WithoutAnAlignmentNothingIsStated) {
   const test::Folder folder;
-  EXPECT_TRUE(read_run_stated_poses(folder.path()).empty());
+  EXPECT_TRUE(read_run_stated_poses(folder.path()).scans.empty());
   test::spill(folder / "alignment.json", R"({"scans": [{"file": "a"}]})");
   EXPECT_THROW(read_run_stated_poses(folder.path()), Error);
   test::spill(folder / "alignment.json", R"({"scans": [{"covariance": [[1]]}]})");

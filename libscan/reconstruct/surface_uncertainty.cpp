@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/reconstruct/surface_uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <string>
+#include <tuple>
+
+#include "libscan/core/error.h"
+#include "libscan/core/parallel.h"
+#include "libscan/reconstruct/surface_weights.h"
+
+namespace scan {
+namespace {
+
+void check(const PointCloud& cloud, const CommonErrors& common) {
+  scan::check(cloud);
+  for (const auto& [what, count] : {std::pair("scan numbers", common.scan.size()),
+                                    std::pair("places of rays", common.in_windows.size())})
+    if (count != 0 && count != cloud.size())
+      throw Error(Trouble::input, "surface uncertainty: " + std::to_string(count) + " " + what +
+                                      " for " + std::to_string(cloud.size()) + " points");
+  const std::size_t stated = common.poses.scans.size();
+  if (stated == 0) return;
+  const std::uint32_t last =
+      common.scan.empty() ? 0 : *std::max_element(common.scan.begin(), common.scan.end());
+  if (last >= stated)
+    throw Error(Trouble::input, "surface uncertainty: a point is of scan " + std::to_string(last) +
+                                    ", but " + std::to_string(stated) + " poses are stated");
+}
+
+// One at a vertex.
+class Patch {
+ public:
+  Patch(const PointCloud& cloud, const CommonErrors& common, double sigma_m,
+        std::span<const WeighedPoint> points, const Eigen::Vector3d& normal)
+      : cloud_(cloud), common_(common), points_(points), normal_(normal) {
+    for (const WeighedPoint& p : points_) sigma_.push_back(p.weight * across(p.point, sigma_m));
+  }
+
+  double of_points() const {
+    double sum = independent();
+    if (common_.in_windows.empty()) return sum;
+    // Those that share noise follow one another, by scan and row.
+    std::vector<std::size_t> order(points_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto place = [&](std::size_t i) {
+      return std::tuple(scan_of(points_[i].point), common_.in_windows[points_[i].point].x(), i);
+    };
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t i, std::size_t j) { return place(i) < place(j); });
+    for (std::size_t k = 0; k < order.size(); ++k)
+      for (std::size_t l = k + 1; l < order.size() && may_share(order[k], order[l]); ++l)
+        sum += 2 * sigma_[order[k]] * sigma_[order[l]] * correlation(order[k], order[l]);
+    return sum;
+  }
+
+  double of_poses() const {
+    if (common_.poses.scans.empty()) return 0;
+    std::map<std::uint32_t, Vector6> levers;
+    for (const WeighedPoint& p : points_) {
+      const auto& stated = common_.poses.scans[scan_of(p.point)];
+      if (!stated) return std::numeric_limits<double>::infinity();
+      Vector6 lever;
+      lever << (cloud_.points[p.point] - stated->centre).cross(normal_), normal_;
+      levers.try_emplace(scan_of(p.point), Vector6::Zero()).first->second += p.weight * lever;
+    }
+    double sum = 0;
+    for (auto a = levers.begin(); a != levers.end(); ++a) {
+      sum += own(*a);
+      for (auto b = levers.begin(); b != a; ++b) sum += 2 * between(*b, *a);
+    }
+    return std::max(sum, 0.0);
+  }
+
+ private:
+  using Lever = std::pair<const std::uint32_t, Vector6>;
+
+  // Were each point's error its own.
+  double independent() const {
+    double sum = 0;
+    for (const double s : sigma_) sum += s * s;
+    return sum;
+  }
+
+  std::uint32_t scan_of(std::uint32_t point) const {
+    return common_.scan.empty() ? 0 : common_.scan[point];
+  }
+
+  double across(std::uint32_t point, double sigma_m) const {
+    if (!cloud_.covariances.empty())
+      return std::sqrt(std::max(0.0, normal_.dot(cloud_.covariances[point] * normal_)));
+    return cloud_.sigma_m.empty() ? sigma_m : cloud_.sigma_m[point];
+  }
+
+  Eigen::Vector2d windows_apart(std::size_t i, std::size_t j) const {
+    return (common_.in_windows[points_[i].point] - common_.in_windows[points_[j].point]).cwiseAbs();
+  }
+
+  // Of one scan and within a window's rows.
+  bool may_share(std::size_t i, std::size_t j) const {
+    return scan_of(points_[i].point) == scan_of(points_[j].point) && windows_apart(i, j).x() < 1;
+  }
+
+  double correlation(std::size_t i, std::size_t j) const {
+    return (1 - windows_apart(i, j).array()).max(0).prod();
+  }
+
+  double own(const Lever& lever) const {
+    return lever.second.dot(common_.poses.scans[lever.first]->covariance * lever.second);
+  }
+
+  // Of scans that no couple ties it is not known: at most the root of both variances' product.
+  double between(const Lever& first, const Lever& second) const {
+    const auto& all = common_.poses.between;
+    const auto at = std::lower_bound(all.begin(), all.end(), std::pair(first.first, second.first),
+                                     [](const CommonCovariance& one, const auto& scans) {
+                                       return std::pair(one.first, one.second) <
+                                              std::pair<std::size_t, std::size_t>(scans);
+                                     });
+    if (at != all.end() && at->first == first.first && at->second == second.first)
+      return first.second.dot(at->covariance * second.second);
+    return std::sqrt(own(first) * own(second));
+  }
+
+  const PointCloud& cloud_;
+  const CommonErrors& common_;
+  std::span<const WeighedPoint> points_;
+  Eigen::Vector3d normal_;
+  std::vector<double> sigma_;  // of each point across the surface, times its weight
+};
+
+}  // namespace
+
+CommonErrors common_errors(std::span<const Scan> scans, StatedPoses poses) {
+  CommonErrors common{.poses = std::move(poses)};
+  bool shared = false;
+  for (const Scan& scan : scans) {
+    const bool placed = scan.grid.columns > 0 && scan.ray.size() == scan.cloud.size();
+    shared |= placed && (scan.noise_window.rows > 1 || scan.noise_window.columns > 1);
+    for (std::size_t k = 0; k < scan.cloud.size(); ++k) {
+      common.scan.push_back(static_cast<std::uint32_t>(&scan - scans.data()));
+      // One apart where the rays are not known: each has its own.
+      const double row = placed ? scan.ray[k] / scan.grid.columns : double(k),
+                   column = placed ? scan.ray[k] % scan.grid.columns : 0;
+      common.in_windows.emplace_back(row / scan.noise_window.rows,
+                                     column / scan.noise_window.columns);
+    }
+  }
+  if (!shared) common.in_windows.clear();
+  return common;
+}
+
+CommonErrors subset(const CommonErrors& common, std::span<const std::uint32_t> indices) {
+  CommonErrors some{.scan = {}, .in_windows = {}, .poses = common.poses};
+  for (const std::uint32_t i : indices) {
+    if (!common.scan.empty()) some.scan.push_back(common.scan[i]);
+    if (!common.in_windows.empty()) some.in_windows.push_back(common.in_windows[i]);
+  }
+  return some;
+}
+
+std::vector<SurfaceVariance> surface_variances(const SurfaceResult& surface,
+                                               const PointCloud& cloud,
+                                               const CommonErrors& common) {
+  check(cloud, common);
+  if (surface.vertex_smoothing_m.empty()) return {};
+  const std::vector<std::uint32_t> valid = finite_points(cloud);
+  if (valid.size() < cloud.size())
+    return surface_variances(surface, subset(cloud, valid), subset(common, valid));
+  const SurfaceWeights weights(surface.surface, surface.vertex_smoothing_m, cloud);
+  std::vector<SurfaceVariance> variances(surface.surface.vertices.size());
+  std::vector<double> residuals_m(variances.size());
+  parallel_for(variances.size(), [&](std::size_t v) {
+    const std::vector<WeighedPoint> points = weights.at(v);
+    const Patch patch(cloud, common, surface.sigma_m, points, weights.normal(v));
+    residuals_m[v] = weights.mean_residual_m(points);
+    variances[v] = {.points_m2 = patch.of_points(), .poses_m2 = patch.of_poses()};
+  });
+  const std::vector<double> taken_m2 = weights.taken_m2(residuals_m);
+  for (std::size_t v = 0; v < taken_m2.size(); ++v) variances[v].smoothing_m2 = taken_m2[v];
+  return variances;
+}
+
+void add_standard_errors(SurfaceResult& surface, const PointCloud& cloud,
+                         const CommonErrors& common) {
+  const std::vector<SurfaceVariance> variances = surface_variances(surface, cloud, common);
+  if (variances.empty()) return;
+  surface.standard_error_m.clear();
+  for (const SurfaceVariance& one : variances)
+    surface.standard_error_m.push_back(std::sqrt(one.total_m2()));
+}
+
+}  // namespace scan
