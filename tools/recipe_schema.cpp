@@ -72,7 +72,8 @@ ordered_json study_schema() {
        {"seeds",
         {{"type", "integer"}, {"minimum", 1}, {"maximum", 1000}, {"default", study.seeds}}},
        {"error", {{"type", "string"}, {"default", study.error}}},
-       {"seconds", {{"enum", timed_stages()}, {"default", study.seconds}}}});
+       {"seconds", {{"enum", timed_stages()}, {"default", study.seconds}}},
+       {"clock", {{"enum", study_clocks()}, {"default", study.clock}}}});
   require(schema, "vary");
   return schema;
 }

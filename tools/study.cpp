@@ -90,6 +90,11 @@ const std::vector<std::string>& timed_stages() {
   return stages;
 }
 
+const std::vector<std::string>& study_clocks() {
+  static const std::vector<std::string> clocks = {"wall", "processor"};
+  return clocks;
+}
+
 Study read_study(JsonReader reader) {
   Study study;
   study.seeds = static_cast<int>(reader.integer("seeds", study.seeds));
@@ -101,6 +106,10 @@ Study read_study(JsonReader reader) {
   if (std::find(stages.begin(), stages.end(), study.seconds) == stages.end())
     reader.fail("seconds", "is \"" + study.seconds +
                                "\", must be all, simulate, acquire, align or reconstruct");
+  study.clock = reader.text("clock", study.clock);
+  const std::vector<std::string>& clocks = study_clocks();
+  if (std::find(clocks.begin(), clocks.end(), study.clock) == clocks.end())
+    reader.fail("clock", "is \"" + study.clock + "\", must be wall or processor");
   for (JsonReader& entry : reader.objects("vary")) {
     Variation variation = entry.has("key") ? read_field(entry) : read_choices(entry);
     entry.finish();
@@ -135,11 +144,20 @@ nlohmann::ordered_json setting_json(const Study& study, const Setting& setting) 
   return json;
 }
 
+double seconds_of(const Study& study, const std::string& stage, const StageCost& cost) {
+  if (study.seconds != "all" && study.seconds != stage) return 0;
+  return study.clock == "wall" ? cost.seconds : cost.processor_seconds;
+}
+
 double seconds_of(const Study& study, const StageCosts& stages) {
   double sum = 0;
-  for (const auto& [stage, cost] : stages)
-    if (study.seconds == "all" || study.seconds == stage) sum += cost.seconds;
+  for (const auto& [stage, cost] : stages) sum += seconds_of(study, stage, cost);
   return sum;
+}
+
+std::string seconds_text(const Study& study) {
+  return (study.clock == "wall" ? "seconds" : "processor seconds") +
+         (study.seconds == "all" ? "" : " of " + study.seconds);
 }
 
 StudyRecipe with_setting(const nlohmann::json& recipe, const Study& study, const Case& in,

@@ -40,17 +40,20 @@ struct Study {
   int seeds = 3;                       // runs of each setting, with seeds that follow one another
   std::string error = "accuracy_rms";  // the figure of the verdict that counts
   std::string seconds = "all";         // of which stage count
+  std::string clock = "wall";          // or "processor": what a second is
 };
 
-// What "seconds" may be: "all" or a stage.
+// What "seconds" may be, "all" or a stage; and "clock".
 const std::vector<std::string>& timed_stages();
+const std::vector<std::string>& study_clocks();
 
 // A recipe's "tradeoff":
 //   "vary": [{"key": "reconstruct/depth", "values": [6, 7, 8]},
 //            {"name": "scanner", "choices": [{"name": "stereo", "set": {FIELD: VALUE, ...}},
 //            ...]}],
 //   "cases": [{"name": "noisy", "set": {FIELD: VALUE, ...}}, ...],
-//   "seeds", "error", "seconds" ("all", "simulate", "acquire", "align" or "reconstruct").
+//   "seeds", "error", "seconds" ("all", "simulate", "acquire", "align" or "reconstruct"), "clock"
+//   ("wall", or "processor": of all threads together, which a busy machine hardly changes).
 // scan::Error (input) for a list without values, a name used twice, or fewer than one seed.
 Study read_study(JsonReader reader);
 
@@ -63,15 +66,20 @@ std::vector<Setting> grid(const Study& study);
 // {"reconstruct/depth": 7, ...}: how a setting is shown and stored.
 nlohmann::ordered_json setting_json(const Study& study, const Setting& setting);
 
-// What a stage took: wall time, and the program's largest resident memory meanwhile.
+// What a stage took by either clock, and the program's largest resident memory meanwhile.
 struct StageCost {
   double seconds = 0;
+  double processor_seconds = 0;
   double peak_mib = 0;
 };
 using StageCosts = std::map<std::string, StageCost>;  // by the stage's name
 
-// The seconds that count in this study.
+// The seconds that count in this study: of a stage, none if its seconds do not, and of all.
+double seconds_of(const Study& study, const std::string& stage, const StageCost& cost);
 double seconds_of(const Study& study, const StageCosts& stages);
+
+// What they are called: "seconds of align", "processor seconds".
+std::string seconds_text(const Study& study);
 
 struct StudyRecipe {
   nlohmann::json recipe;

@@ -61,7 +61,9 @@ const Measurement& figure_of(const Verdict& verdict, const std::string& name) {
 ordered_json outcome_json(const RunOutcome& outcome, const std::string& as_run) {
   ordered_json stages = ordered_json::object();
   for (const auto& [stage, cost] : outcome.stages)
-    stages[stage] = {{"seconds", cost.seconds}, {"peak_mib", cost.peak_mib}};
+    stages[stage] = {{"seconds", cost.seconds},
+                     {"processor_seconds", cost.processor_seconds},
+                     {"peak_mib", cost.peak_mib}};
   return {
       {"run", fingerprint(as_run)},
       {"error", std::isfinite(outcome.error) ? ordered_json(outcome.error) : ordered_json(nullptr)},
@@ -78,8 +80,19 @@ RunOutcome outcome_of(const ordered_json& json) {
       .stages = {},
       .trouble = json.at("trouble").get<std::string>()};
   for (const auto& [stage, cost] : json.at("stages").items())
-    outcome.stages[stage] = {cost.at("seconds").get<double>(), cost.at("peak_mib").get<double>()};
+    outcome.stages[stage] = {cost.at("seconds").get<double>(),
+                             cost.at("processor_seconds").get<double>(),
+                             cost.at("peak_mib").get<double>()};
   return outcome;
+}
+
+// Both work in turn, scan by scan: of the processor's seconds each has its share of the wall's.
+void part_acquire(double seconds, StageCosts& costs) {
+  StageCost& whole = costs.at("simulate");
+  const double processor_seconds = whole.processor_seconds * seconds / whole.seconds;
+  whole.seconds -= seconds;
+  whole.processor_seconds -= processor_seconds;
+  costs["acquire"] = {seconds, processor_seconds, whole.peak_mib};
 }
 
 bool is_noise(synth::Effect effect) {
@@ -129,17 +142,16 @@ void StudyRuns::do_stages(const fs::path& run, const Recipe& recipe, const Spare
     }
     restart_peak_memory();
     const Stopwatch watch;
+    const double begin_s = processor_seconds();
     if (stage.name == std::string("simulate"))
       simulate_run(run, recipe, {}, console);
     else if (stage.name == std::string("align"))
       spared.poses ? write_true_poses(run) : align_run(run, recipe, console);
     else
       reconstruct_run(run, recipe, console);
-    StageCosts took = {{stage.name, {watch.seconds(), peak_memory_mib()}}};
-    if (stage.name == std::string("simulate")) {
-      took["acquire"] = {console.seconds().at("acquire"), peak_memory_mib()};
-      took["simulate"].seconds -= took["acquire"].seconds;
-    }
+    StageCosts took = {
+        {stage.name, {watch.seconds(), processor_seconds() - begin_s, peak_memory_mib()}}};
+    if (stage.name == std::string("simulate")) part_acquire(console.seconds().at("acquire"), took);
     costs.insert(took.begin(), took.end());
     done_[key] = {run, took};
   }
@@ -158,8 +170,8 @@ RunOutcome StudyRuns::run(const std::string& name, const StudyRecipe& study_reci
     recipe.effects = left_over(recipe, spared);
   const ThreadLimit limit(study_recipe.threads > 0 ? study_recipe.threads : thread_count());
   const std::string as_run = json_text(to_json(recipe));
-  const std::string key =
-      as_run + figure + std::to_string(thread_count()) + (spared.poses ? " with true poses" : "");
+  const std::string key = "both clocks" + as_run + figure + std::to_string(thread_count()) +
+                          (spared.poses ? " with true poses" : "");
   const fs::path run = runs_ / name, result = run / "outcome.json";
   if (fs::exists(result)) {
     const ordered_json stored = ordered_json::parse(read_file(result), nullptr, false);

@@ -2,89 +2,50 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study_search.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "tools/study_model.h"
 
 namespace scan {
 namespace {
 
 constexpr std::size_t share_of_grid = 5;
-constexpr double model_slack = 1.5;  // so far the model's seconds may be off
+constexpr std::size_t share_of_first = 4;  // of those runs, before what was seen tells where to go
+constexpr std::uint32_t drawings = 128;    // of the whole grid, to tell what may be the advice
 
 bool is_known(const StudyPoint& point) {
   return std::isfinite(point.error);
 }
 
-// Where the factor of each variation's value stands among the unknowns; 0 is the common one.
-std::vector<Eigen::Index> columns(const Study& study) {
-  std::vector<Eigen::Index> first{1};
-  for (const Variation& variation : study.vary)
-    first.push_back(first.back() + static_cast<Eigen::Index>(variation.choices.size()));
-  return first;
+// As many as a model of the fields' own effects has unknowns.
+std::size_t first_runs(const Study& study) {
+  std::size_t runs = 1;
+  for (const Variation& variation : study.vary) runs += variation.choices.size() - 1;
+  return runs;
 }
 
-Eigen::RowVectorXd row_of(const Setting& setting, const std::vector<Eigen::Index>& first) {
-  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(first.back());
-  row(0) = 1;
-  for (std::size_t i = 0; i < setting.size(); ++i)
-    row(first[i] + static_cast<Eigen::Index>(setting[i])) = 1;
-  return row;
-}
-
-// The factors' logarithms by least squares; of the many solutions the shortest, which leaves a
-// value that was never tried at the middle of its list's.
-Eigen::VectorXd fitted(const std::vector<StudyPoint>& tried, const std::vector<Eigen::Index>& first,
-                       double StudyPoint::*quantity) {
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(tried.size()), first.back());
-  Eigen::VectorXd logs = Eigen::VectorXd::Zero(rows.rows());
-  rows.setZero();
-  for (std::size_t i = 0; i < tried.size(); ++i) {
-    if (!is_known(tried[i]) || !(tried[i].*quantity > 0)) continue;
-    rows.row(static_cast<Eigen::Index>(i)) = row_of(tried[i].setting, first);
-    logs(static_cast<Eigen::Index>(i)) = std::log(tried[i].*quantity);
-  }
-  return rows.completeOrthogonalDecomposition().solve(logs);
-}
-
-// Every setting of the grid: as tried, or as the model sees it (then `runs` is 0).
-std::vector<StudyPoint> estimated(const Study& study, const std::vector<StudyPoint>& tried) {
-  const auto first = columns(study);
-  const Eigen::VectorXd error = fitted(tried, first, &StudyPoint::error);
-  const Eigen::VectorXd seconds = fitted(tried, first, &StudyPoint::seconds);
-  std::vector<StudyPoint> points;
-  for (const Setting& setting : grid(study)) {
-    const auto found = std::find_if(tried.begin(), tried.end(), [&](const StudyPoint& point) {
-      return point.setting == setting;
-    });
-    const Eigen::RowVectorXd row = row_of(setting, first);
-    points.push_back(found != tried.end() ? *found
-                                          : StudyPoint{.setting = setting,
-                                                       .error = std::exp(row.dot(error)),
-                                                       .seconds = std::exp(row.dot(seconds))});
-  }
-  return points;
-}
-
-// The middle of all lists, and what differs from it in one field.
-std::vector<Setting> star(const Study& study) {
-  Setting middle;
-  for (const Variation& variation : study.vary) middle.push_back(variation.choices.size() / 2);
-  std::vector<Setting> settings{middle};
-  for (std::size_t k = 0; k < study.vary.size(); ++k)
-    for (std::size_t i = 0; i < study.vary[k].choices.size(); ++i) {
-      Setting setting = middle;
-      setting[k] = i;
-      if (setting != middle) settings.push_back(setting);
+// What the runs of each setting left, seed by seed, for the model. Runs that failed count as ten
+// times worse than the worst, so that their neighbours are held for bad.
+std::vector<StudyObservation> observed(const std::vector<StudyPoint>& points,
+                                       std::vector<double> StudyPoint::*quantity) {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const StudyPoint& point : points)
+    for (const double value : point.*quantity)
+      if (std::isfinite(value) && value > 0) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+      }
+  if (most == 0) least = most = 1;
+  std::vector<StudyObservation> observations;
+  for (std::size_t place = 0; place < points.size(); ++place)
+    for (std::size_t seed = 0; seed < points[place].runs; ++seed) {
+      const double value = (points[place].*quantity)[seed];
+      const double shown = std::isfinite(value) ? std::max(value, least / 10) : 10 * most;
+      observations.push_back({place, static_cast<int>(seed), std::log(shown)});
     }
-  return settings;
-}
-
-int fields_apart(const Setting& a, const Setting& b) {
-  int apart = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) apart += a[k] != b[k];
-  return apart;
+  return observations;
 }
 
 class Search {
@@ -93,69 +54,84 @@ class Search {
       : study_(study),
         tolerance_(tolerance),
         measure_(measure),
-        most_runs_(grid(study).size() * static_cast<std::size_t>(study.seeds) / share_of_grid) {}
-
-  void try_once(const Setting& setting) {
-    tried_.push_back(measure_(setting, 1));
-    ++runs_;
+        seeds_(static_cast<std::size_t>(study.seeds)),
+        error_(study),
+        seconds_(study) {
+    for (const Setting& setting : grid(study)) points_.push_back({.setting = setting});
+    runs_left_ = std::max(points_.size() * seeds_ / share_of_grid, first_runs(study) + seeds_ - 1);
   }
 
-  // Until what is advised has run with all seeds.
-  void follow_the_model() {
-    while (true) {
-      const auto points = estimated(study_, tried_);
-      const auto best = advised(points, tolerance_);
-      if (!best || points[*best].runs >= static_cast<std::size_t>(study_.seeds)) return;
-      if (points[*best].runs == 0)
-        try_once(points[*best].setting);
-      else
-        run_all_seeds(points[*best].setting);
+  // Where the model knows least.
+  void run_first() {
+    for (std::size_t left = std::min(first_runs(study_), runs_left_ / share_of_first); left > 0;
+         --left) {
+      Eigen::VectorXd variances = error_.variances();
+      for (std::size_t i = 0; i < points_.size(); ++i)
+        if (points_[i].runs > 0) variances(static_cast<Eigen::Index>(i)) = -1;
+      Eigen::Index place;
+      variances.maxCoeff(&place);
+      run_once_more(static_cast<std::size_t>(place));
+      error_.fit(observed(points_, &StudyPoint::errors));
     }
   }
 
-  // Tries one more setting that may be cheaper than the advised one, or better where none is within
-  // the tolerance: of those that differ in the fewest fields the best by the model. False if there
-  // is none, or no runs for it are left.
-  bool look_beside_the_advice() {
-    if (runs_ + static_cast<std::size_t>(study_.seeds) > most_runs_) return false;
-    const auto points = estimated(study_, tried_);
-    const auto best = advised(points, tolerance_);
-    if (!best) return false;
-    const StudyPoint& incumbent = points[*best];
-    const double most_seconds = incumbent.error <= tolerance_
-                                    ? model_slack * incumbent.seconds
-                                    : std::numeric_limits<double>::infinity();
-    const StudyPoint* next = nullptr;
-    const auto rank = [&](const StudyPoint& point) {
-      return std::pair(fields_apart(point.setting, incumbent.setting), point.error);
-    };
-    for (const StudyPoint& point : points)
-      if (point.runs == 0 && point.seconds < most_seconds && (!next || rank(point) < rank(*next)))
-        next = &point;
-    if (!next) return false;
-    try_once(next->setting);
-    return true;
+  // Runs what is most often the advice, until that has run with all its seeds in every drawing.
+  void run_what_may_be_advised() {
+    while (runs_left_ > 0) {
+      error_.fit(observed(points_, &StudyPoint::errors));
+      seconds_.fit(observed(points_, &StudyPoint::seed_seconds));
+      const std::vector<std::size_t> times = times_advised();
+      std::size_t next = points_.size();
+      for (std::size_t i = 0; i < points_.size(); ++i)
+        if (can_be_completed(points_[i]) && times[i] > (next < points_.size() ? times[next] : 0))
+          next = i;
+      if (next == points_.size()) return;
+      run_once_more(next);
+    }
   }
 
   std::vector<StudyPoint> take() {
-    mark_front(tried_);
-    return std::move(tried_);
+    std::erase_if(points_, [](const StudyPoint& point) { return point.runs == 0; });
+    mark_front(points_);
+    return std::move(points_);
   }
 
  private:
-  void run_all_seeds(const Setting& setting) {
-    const auto found = std::find_if(tried_.begin(), tried_.end(), [&](const StudyPoint& point) {
-      return point.setting == setting;
-    });
-    *found = measure_(setting, study_.seeds);
-    runs_ += static_cast<std::size_t>(study_.seeds) - 1;
+  bool can_be_completed(const StudyPoint& point) const {
+    return point.runs < seeds_ && seeds_ - point.runs <= runs_left_;
+  }
+
+  void run_once_more(std::size_t place) {
+    StudyPoint& point = points_[place];
+    point = measure_(point.setting, static_cast<int>(point.runs) + 1);
+    --runs_left_;
+  }
+
+  // How often each setting is the advice, were the others as they are drawn.
+  std::vector<std::size_t> times_advised() const {
+    std::vector<std::size_t> times(points_.size(), 0);
+    for (std::uint32_t i = 0; i < drawings; ++i) {
+      RandomStream random(runs_left_, i, 0);
+      const Eigen::VectorXd error = error_.draw(random), seconds = seconds_.draw(random);
+      std::vector<StudyPoint> drawn = points_;
+      for (std::size_t place = 0; place < drawn.size(); ++place) {
+        if (drawn[place].runs < seeds_) {
+          drawn[place].error = std::exp(error(static_cast<Eigen::Index>(place)));
+          drawn[place].seconds = std::exp(seconds(static_cast<Eigen::Index>(place)));
+        }
+        drawn[place].runs = seeds_;
+      }
+      if (const auto best = advised(drawn, tolerance_)) ++times[*best];
+    }
+    return times;
   }
 
   const Study& study_;
   double tolerance_;
   const Measure& measure_;
-  std::size_t most_runs_, runs_ = 0;
-  std::vector<StudyPoint> tried_;
+  std::size_t seeds_, runs_left_ = 0;
+  StudyModel error_, seconds_;
+  std::vector<StudyPoint> points_;  // of the whole grid
 };
 
 }  // namespace
@@ -170,9 +146,11 @@ void mark_front(std::vector<StudyPoint>& points) {
 }
 
 std::optional<std::size_t> advised(const std::vector<StudyPoint>& points, double tolerance) {
+  std::size_t most_runs = 0;
+  for (const StudyPoint& point : points) most_runs = std::max(most_runs, point.runs);
   std::optional<std::size_t> cheapest, best;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!is_known(points[i])) continue;
+    if (!is_known(points[i]) || points[i].runs < most_runs) continue;
     if (!best || points[i].error < points[*best].error) best = i;
     if (points[i].error <= tolerance &&
         (!cheapest || points[i].seconds < points[*cheapest].seconds))
@@ -191,9 +169,8 @@ std::vector<StudyPoint> search_grid(const Study& study, const Measure& measure) 
 std::vector<StudyPoint> search_adaptively(const Study& study, double tolerance,
                                           const Measure& measure) {
   Search search(study, tolerance, measure);
-  for (const Setting& setting : star(study)) search.try_once(setting);
-  search.follow_the_model();
-  while (search.look_beside_the_advice()) search.follow_the_model();
+  search.run_first();
+  search.run_what_may_be_advised();
   return search.take();
 }
 

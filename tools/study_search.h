@@ -31,7 +31,7 @@ struct StudyPoint {
 void mark_front(std::vector<StudyPoint>& points);
 
 // The cheapest point whose error is within the tolerance; the most accurate one if none is, or if
-// there is no tolerance (0). None if every run failed.
+// there is no tolerance (0); of those that ran with the most seeds. None if all of them failed.
 std::optional<std::size_t> advised(const std::vector<StudyPoint>& points, double tolerance);
 
 // Runs a setting with that many seeds; what ran before is not run again.
@@ -40,12 +40,10 @@ using Measure = std::function<StudyPoint(const Setting& setting, int seeds)>;
 // Every setting with every seed.
 std::vector<StudyPoint> search_grid(const Study& study, const Measure& measure);
 
-// The setting in the middle of all lists and those that differ from it in one field, with one seed;
-// then what is advised among the settings tried and the others as a model sees them, until that one
-// has run with all its seeds. In the model each field's value multiplies error and seconds by a
-// factor of its own, fitted to what was tried. Finds what the grid finds where that holds nearly.
-// Where it does not, what was tried corrects it: up to a fifth of the grid's runs, settings beside
-// the advised one are tried, too. Returns all that it tried.
+// A few runs spread over the grid; then, one run at a time, what is
+// most often the advice among drawings of the whole grid from a model of all runs so far
+// (StudyModel; Thompson 1933, counted), until that is what has run with all its seeds, or a fifth
+// of the grid's runs is done. Returns all that it tried; at least one setting ran with all seeds.
 std::vector<StudyPoint> search_adaptively(const Study& study, double tolerance,
                                           const Measure& measure);
 

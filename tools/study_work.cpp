@@ -131,6 +131,7 @@ StudyPoint StudyWork::measure(const Case& in, const Setting& setting, int seeds)
     point.seconds += point.seed_seconds.back() / seeds;
     for (const auto& [stage, cost] : outcome.stages) {
       point.stages[stage].seconds += cost.seconds / seeds;
+      point.stages[stage].processor_seconds += cost.processor_seconds / seeds;
       point.stages[stage].peak_mib = std::max(point.stages[stage].peak_mib, cost.peak_mib);
     }
     if (point.trouble.empty()) point.trouble = outcome.trouble;

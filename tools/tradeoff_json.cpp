@@ -21,7 +21,9 @@ ordered_json number(double value) {
 ordered_json point_json(const Study& study, const CaseResult& in, const StudyPoint& point) {
   ordered_json stages = ordered_json::object();
   for (const auto& [stage, cost] : point.stages)
-    stages[stage] = {{"seconds", cost.seconds}, {"peak_mib", cost.peak_mib}};
+    stages[stage] = {{"seconds", cost.seconds},
+                     {"processor_seconds", cost.processor_seconds},
+                     {"peak_mib", cost.peak_mib}};
   ordered_json errors = ordered_json::array();
   for (const double error : point.errors) errors.push_back(number(error));
   return {{"case", in.name},
@@ -82,9 +84,10 @@ std::string advice_text(const StudyResult& result, const CaseResult& in) {
   if (!in.chosen) return where + "Every run failed: " + in.points.front().trouble + ".";
   const StudyPoint& point = in.points[*in.chosen];
   char seconds[32];
-  std::snprintf(seconds, sizeof seconds, "%.2g", point.seconds);
+  std::snprintf(seconds, sizeof seconds, "%.3g", point.seconds);
   std::string text = where + setting_text(result.study, point.setting) + ": " + result.study.error +
-                     " " + readable_value(point.error, point.unit) + " in " + seconds + " s";
+                     " " + readable_value(point.error, point.unit) + " in " + seconds + " " +
+                     seconds_text(result.study);
   const std::string tolerance = readable_value(result.tolerance, point.unit);
   if (result.tolerance == 0)
     text += ", the most accurate of those tried";
@@ -113,7 +116,7 @@ ordered_json tradeoff_json(const StudyResult& result) {
           {"search", result.search},
           {"machine", machine_text()},
           {"threads", thread_count()},
-          {"seconds", result.study.seconds},
+          {"seconds", seconds_text(result.study)},
           {"runs", runs},
           {"cases", cases},
           {"advice", {{"text", text}, {"meets", result.tolerance > 0 && meets_tolerance(result)}}}};
@@ -125,7 +128,8 @@ std::string tradeoff_csv(const ordered_json& tradeoff) {
   for (const auto& [key, value] : runs.at(0).at("settings").items()) table += "," + csv_field(key);
   table += "," + tradeoff.at("figure").get<std::string>() + ",least,most,runs,seconds";
   const std::vector<std::string> stages = {"simulate", "acquire", "align", "reconstruct"};
-  for (const std::string& stage : stages) table += "," + stage + "_s," + stage + "_peak_mib";
+  for (const std::string& stage : stages)
+    table += "," + stage + "_s," + stage + "_processor_s," + stage + "_peak_mib";
   table += ",on_front\n";
   for (const ordered_json& run : runs) {
     table += csv_field(run.at("case"));
@@ -134,8 +138,8 @@ std::string tradeoff_csv(const ordered_json& tradeoff) {
       table += "," + csv_field(run.at(key));
     for (const std::string& stage : stages) {
       const ordered_json cost = run.at("stages").value(stage, ordered_json::object());
-      table += "," + csv_field(cost.value("seconds", ordered_json())) + "," +
-               csv_field(cost.value("peak_mib", ordered_json()));
+      for (const char* key : {"seconds", "processor_seconds", "peak_mib"})
+        table += "," + csv_field(cost.value(key, ordered_json()));
     }
     table += std::string(",") + (run.at("on_front").get<bool>() ? "yes" : "no") + "\n";
   }

@@ -34,9 +34,9 @@ bool meets_tolerance(const StudyResult& result);
 // What to choose and what limits it, in one sentence or two.
 std::string advice_text(const StudyResult& result, const CaseResult& in);
 
-// Keys: figure, unit, tolerance, search, machine, threads, seconds; runs [{case, settings, error_m
-// (in `unit`), least_error, most_error, count, seconds, stages, on_front, trouble}]; cases [{name,
-// advice, sources}]; advice {text, meets}.
+// Keys: figure, unit, tolerance, search, machine, threads, seconds (which); runs [{case, settings,
+// error_m (in `unit`), least_error, most_error, count, seconds, stages, on_front, trouble}]; cases
+// [{name, advice, sources}]; advice {text, meets}.
 nlohmann::ordered_json tradeoff_json(const StudyResult& result);
 
 // One row a setting, with a head; of `tradeoff_json`'s runs.

@@ -22,6 +22,10 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// Seconds that processors have worked for this process, on all threads: what else the machine does
+// hardly changes them.
+double processor_seconds();
+
 // Largest resident memory of this process, MiB (1 MiB = 2^20 bytes), since it began or since the
 // last restart.
 double peak_memory_mib();

@@ -151,11 +151,10 @@ std::string source_table(const ordered_json& cases, const std::string& unit) {
 }
 
 std::string plot_of(const ordered_json& tradeoff) {
-  const std::string stage = tradeoff.at("seconds").get<std::string>();
   return tradeoff_plot(marks_of(tradeoff),
                        {.figure = tradeoff.at("figure").get<std::string>(),
                         .unit = tradeoff.at("unit").get<std::string>(),
-                        .seconds = stage == "all" ? "seconds" : "seconds of " + stage},
+                        .seconds = tradeoff.at("seconds").get<std::string>()},
                        number(tradeoff.at("tolerance")));
 }
 
