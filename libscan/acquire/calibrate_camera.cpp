@@ -30,13 +30,13 @@ calibrating::BundleFit fit_pictures(const Board& board, std::span<const BoardSig
   return calibrating::adjust(bundle);
 }
 
+}  // namespace
+
 void check(const CalibrateOptions& options) {
   if (options.distortion_terms < 0 || options.distortion_terms > 5)
     throw Error(Trouble::usage, "calibration/distortion_terms: is " +
                                     std::to_string(options.distortion_terms) + ", must be 0 to 5");
 }
-
-}  // namespace
 
 CameraCalibration calibrate_camera(const Board& board, std::span<const BoardSighting> sightings,
                                    const CalibrateOptions& options) {
@@ -45,15 +45,9 @@ CameraCalibration calibrate_camera(const Board& board, std::span<const BoardSigh
   CameraCalibration result;
   std::vector<std::size_t> used = calibrating::usable(board, sightings, result.pictures);
   calibrating::BundleFit fit = fit_pictures(board, sightings, used, options);
-  for (auto off = calibrating::far_off(fit.picture_rms_px, options.max_rms_ratio); !off.empty();
-       off = calibrating::far_off(fit.picture_rms_px, options.max_rms_ratio)) {
-    for (auto place = off.rbegin(); place != off.rend(); ++place) {
-      result.pictures[used[*place]] = {"its corners fit the others' camera too badly",
-                                       fit.picture_rms_px[*place]};
-      used.erase(used.begin() + static_cast<std::ptrdiff_t>(*place));
-    }
+  while (
+      calibrating::drop_far_off(fit.picture_rms_px, options.max_rms_ratio, used, result.pictures))
     fit = fit_pictures(board, sightings, used, options);
-  }
   result.camera = fit.bundle.cameras.front();
   result.rms_px = fit.rms_px;
   result.sigma_px = std::max(fit.sigma_px, least_sigma_px);

@@ -26,6 +26,9 @@ struct CalibrateOptions {
   double max_relative_sigma = 0.05;
 };
 
+// Throws scan::Error (usage) naming the field that is out of its domain.
+void check(const CalibrateOptions& options);
+
 // What became of one picture.
 struct PictureUse {
   std::string left_out;  // why; empty if it was used
@@ -56,8 +59,10 @@ namespace calibrating {
 std::vector<std::size_t> usable(const Board& board, std::span<const BoardSighting> sightings,
                                 std::vector<PictureUse>& uses);
 
-// Of the pictures used, the places of those whose rms is above `ratio` times the median.
-std::vector<std::size_t> far_off(std::span<const double> rms_px, double ratio);
+// Takes the pictures whose rms is above `ratio` times the median out of `used` and tells so in
+// `uses`; false if there are none.
+bool drop_far_off(std::span<const double> rms_px, double ratio, std::vector<std::size_t>& used,
+                  std::vector<PictureUse>& uses);
 
 // Throws scan::Error (computation) naming the direction of focal length and centre that is open.
 void check_determined(const std::string& name, const Camera& camera,

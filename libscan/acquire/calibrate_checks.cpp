@@ -75,12 +75,17 @@ std::vector<std::size_t> usable(const Board& board, std::span<const BoardSightin
               "a board is counted by its inner corners: 10 x 7 squares have 9x6");
 }
 
-std::vector<std::size_t> far_off(std::span<const double> rms_px, double ratio) {
-  const double limit = ratio * quantile({rms_px.begin(), rms_px.end()}, 0.5);
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < rms_px.size(); ++i)
-    if (rms_px[i] > limit) places.push_back(i);
-  return places;
+bool drop_far_off(std::span<const double> rms_px, double ratio, std::vector<std::size_t>& used,
+                  std::vector<PictureUse>& uses) {
+  const double limit_px = ratio * quantile({rms_px.begin(), rms_px.end()}, 0.5);
+  std::vector<std::size_t> kept;
+  for (std::size_t place = 0; place < used.size(); ++place)
+    if (rms_px[place] > limit_px)
+      uses[used[place]] = {"its corners fit the others' camera too badly", rms_px[place]};
+    else
+      kept.push_back(used[place]);
+  std::swap(used, kept);
+  return used.size() < kept.size();
 }
 
 void check_determined(const std::string& name, const Camera& camera,
