@@ -55,6 +55,19 @@ Eigen::Vector2d middle_of(const Camera& camera, const Eigen::Matrix3d& rectified
   return (rectified_from_camera * *ray).hnormalized();
 }
 
+void set_search_range(double nearest_m, double farthest_m, StereoCalibration& calibration) {
+  const double scale_px_m = calibration.focal_px * calibration.baseline_m;
+  const double least_px = std::floor(scale_px_m / farthest_m - calibration.doffs_px);
+  const double most_px = std::ceil(scale_px_m / nearest_m - calibration.doffs_px);
+  if (!(std::abs(least_px) <= calibration.width_px && most_px - least_px < calibration.width_px))
+    refuse("depths from " + shortest(nearest_m) + " m to " + shortest(farthest_m) +
+           " m are disparities from " + shortest(least_px) + " px to " + shortest(most_px) +
+           " px, must be fewer than the picture's " + std::to_string(calibration.width_px) +
+           " columns");
+  calibration.min_disparity_px = static_cast<int>(least_px);
+  calibration.disparities_px = static_cast<int>(most_px - least_px) + 1;
+}
+
 // Keys' kernel with a = -1/2: exact for parabolas.
 std::array<double, 4> cubic_weights(double t) {
   return {t * (-0.5 + t * (1 - 0.5 * t)), 1 + t * t * (-2.5 + 1.5 * t),
@@ -109,12 +122,7 @@ Rectification rectify(const StereoRig& rig, double nearest_m, double farthest_m)
   calibration.cx_px = (calibration.width_px - 1) / 2.0 - focal_px * left.x();
   calibration.cy_px = (calibration.height_px - 1) / 2.0 - focal_px * (left.y() + right.y()) / 2;
   calibration.doffs_px = focal_px * (left.x() - right.x());
-  const double scale_px_m = focal_px * calibration.baseline_m;
-  calibration.min_disparity_px =
-      static_cast<int>(std::floor(scale_px_m / farthest_m - calibration.doffs_px));
-  calibration.disparities_px =
-      static_cast<int>(std::ceil(scale_px_m / nearest_m - calibration.doffs_px)) + 1 -
-      calibration.min_disparity_px;
+  set_search_range(nearest_m, farthest_m, calibration);
   return result;
 }
 

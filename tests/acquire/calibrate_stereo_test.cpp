@@ -142,7 +142,7 @@ TEST(CalibrateStereo, FindsWhatOpenCvFinds) {
 }
 
 // A wavy picture on a plane, seen by both cameras as they are; calibrated from pictures of the
-// board, rectified, matched. Brightness: three waves that do not repeat within the search range.
+// board, rectified, matched.
 TEST(CalibrateStereo, MakesAPairThatMeasuresAPlaneWhereItIs) {
   const StereoRig truth = leaning_rig();
   std::vector<BoardPair> pairs;
@@ -160,23 +160,10 @@ TEST(CalibrateStereo, MakesAPairThatMeasuresAPlaneWhereItIs) {
   EXPECT_LT(chi2, 48.3);  // 999 of 1000 at 22 degrees of freedom
 
   const Pose wall = test::held_board(truth.left, test_board, {420, 300}, 0.32, 0.3, 1);
-  const auto wavy = [&](const Camera& camera, const Pose& pose) {
-    Image<std::uint8_t> picture(camera.width_px, camera.height_px);
-    const Pose wall_from_camera = pose.inverse();
-    for (int row = 0; row < camera.height_px; ++row)
-      for (int column = 0; column < camera.width_px; ++column) {
-        const Eigen::Vector2d at = test::on_board(
-            camera, wall_from_camera, {static_cast<double>(column), static_cast<double>(row)});
-        const double level = 127 + 40 * std::sin(2100 * at.x() + 300 * at.y()) +
-                             40 * std::sin(1370 * at.x() - 900 * at.y() + 1) +
-                             40 * std::sin(910 * at.x() + 1500 * at.y() + 2);
-        picture(column, row) = static_cast<std::uint8_t>(std::lround(level));
-      }
-    return picture;
-  };
   const Rectification turned = rectify(found.rig, 0.24, 0.45);
-  const Scan scan = acquire_stereo(
-      rectify(turned, wavy(truth.left, wall), wavy(truth.right, truth.right_from_left * wall)));
+  const Scan scan =
+      acquire_stereo(rectify(turned, test::wavy_wall(truth.left, wall),
+                             test::wavy_wall(truth.right, truth.right_from_left * wall)));
   ASSERT_GT(scan.cloud.size(), 200000u);
   std::vector<double> off_m;
   const Eigen::Vector3d normal = wall.linear().col(2);

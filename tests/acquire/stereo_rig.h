@@ -33,4 +33,20 @@ inline std::vector<Pose> boards_in_sight_of_both(const StereoRig& rig, std::uint
   return poses;
 }
 
+// A wall whose brightness is three waves that do not repeat within a stereo search.
+inline Image<std::uint8_t> wavy_wall(const Camera& camera, const Pose& camera_from_wall) {
+  Image<std::uint8_t> picture(camera.width_px, camera.height_px);
+  const Pose wall_from_camera = camera_from_wall.inverse();
+  for (int row = 0; row < camera.height_px; ++row)
+    for (int column = 0; column < camera.width_px; ++column) {
+      const Eigen::Vector2d at = on_board(camera, wall_from_camera,
+                                          {static_cast<double>(column), static_cast<double>(row)});
+      const double level = 127 + 40 * std::sin(2100 * at.x() + 300 * at.y()) +
+                           40 * std::sin(1370 * at.x() - 900 * at.y() + 1) +
+                           40 * std::sin(910 * at.x() + 1500 * at.y() + 2);
+      picture(column, row) = static_cast<std::uint8_t>(std::lround(level));
+    }
+  return picture;
+}
+
 }  // namespace scan::test
