@@ -13,6 +13,7 @@
 // to 9 sub-rays, ten million pulses, and 400 laser steps, each over a million triangles.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -21,6 +22,7 @@
 #include <map>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "libscan/core/cost.h"
 #include "libscan/core/parallel.h"
@@ -30,6 +32,33 @@
 
 namespace scan::synth {
 namespace {
+
+// A ball of radius 0.35 with bumps, of about `triangles` triangles, 1.2 m before the scanner.
+Scene bumpy_ball(int triangles) {
+  const int rows = std::max(4, static_cast<int>(std::sqrt(triangles / 4.0)));
+  const int columns = 2 * rows;
+  Mesh mesh;
+  for (int i = 0; i <= rows; ++i)
+    for (int j = 0; j < columns; ++j) {
+      const double polar = std::numbers::pi * i / rows;
+      const double around = 2 * std::numbers::pi * j / columns;
+      const double r = 0.35 + 0.02 * std::sin(9 * polar) * std::cos(11 * around);
+      mesh.vertices.emplace_back(r * std::sin(polar) * std::cos(around), r * std::cos(polar),
+                                 1.2 + r * std::sin(polar) * std::sin(around));
+    }
+  const auto at = [&](int i, int j) {
+    return static_cast<std::uint32_t>(i * columns + j % columns);
+  };
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
+      mesh.triangles.push_back({at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
+    }
+  Object ball;
+  ball.name = "ball";
+  ball.geometry = std::move(mesh);
+  return {.objects = {std::move(ball)}, .materials = {{.name = "matt"}}};
+}
 
 PhaseCamera phase_camera(int width, int sub_rays) {
   const double focal = 1.2 * width;
