@@ -9,6 +9,7 @@ namespace scan {
 
 Action run_command(CommandLine& line);
 Action simulate_command(CommandLine& line);
+Action calibrate_command(CommandLine& line);
 Action acquire_command(CommandLine& line);
 Action align_command(CommandLine& line);
 Action reconstruct_command(CommandLine& line);

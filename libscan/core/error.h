@@ -17,12 +17,19 @@ enum class Trouble {
   resource = 6,     // over a memory or size limit
 };
 
+// Control characters, which broken files bring into messages, as question marks.
+inline std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  return text;
+}
+
 // `what()` is one line that names file, field, value and limit where they apply; `hint()` may be
 // empty and says what the user can do about it.
 class Error : public std::runtime_error {
  public:
   Error(Trouble trouble, const std::string& message, std::string hint = {})
-      : std::runtime_error(message), trouble_(trouble), hint_(std::move(hint)) {}
+      : std::runtime_error(one_line(message)), trouble_(trouble), hint_(std::move(hint)) {}
   Trouble trouble() const { return trouble_; }
   const std::string& hint() const { return hint_; }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/io/calibration_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -13,8 +14,6 @@
 
 namespace scan {
 namespace {
-
-using nlohmann::ordered_json;
 
 int whole(JsonReader& reader, std::string_view key, long low, long high,
           const long* otherwise = nullptr) {
@@ -53,20 +52,6 @@ Camera read_camera(JsonReader reader) {
   return camera;
 }
 
-ordered_json to_json(const Camera& c) {
-  return {{"width_px", c.width_px},
-          {"height_px", c.height_px},
-          {"fx_px", c.fx_px},
-          {"fy_px", c.fy_px},
-          {"cx_px", c.cx_px},
-          {"cy_px", c.cy_px},
-          {"k1", c.k1},
-          {"k2", c.k2},
-          {"p1", c.p1},
-          {"p2", c.p2},
-          {"k3", c.k3}};
-}
-
 Sensor read_sensor(JsonReader reader) {
   Sensor sensor;
   sensor.gain_e_per_dn = positive(reader, "gain_e_per_dn", reader.number("gain_e_per_dn"));
@@ -81,12 +66,23 @@ Sensor read_sensor(JsonReader reader) {
   return sensor;
 }
 
-ordered_json to_json(const Sensor& s) {
-  return {{"gain_e_per_dn", s.gain_e_per_dn},
-          {"offset_dn", s.offset_dn},
-          {"read_noise_e", s.read_noise_e},
-          {"full_well_e", s.full_well_e},
-          {"bits", s.bits}};
+// The covariance of a camera; its figures are for readers of the file.
+CameraCovariance read_uncertainty(JsonReader reader) {
+  for (const char* figure : {"rms_px", "sigma_px"})
+    not_negative(reader, figure, reader.number(figure));
+  const nlohmann::json& rows = reader.value("covariance");
+  CameraCovariance covariance;
+  const auto is_row = [](const nlohmann::json& row) {
+    return row.is_array() && row.size() == 9 &&
+           std::all_of(row.begin(), row.end(), [](const auto& x) { return x.is_number(); });
+  };
+  if (!rows.is_array() || rows.size() != 9 || !std::all_of(rows.begin(), rows.end(), is_row))
+    reader.fail("covariance", "must be 9 rows of 9 numbers");
+  for (int i = 0; i < 81; ++i) covariance(i / 9, i % 9) = rows[i / 9][i % 9].get<double>();
+  if (!(covariance.diagonal().minCoeff() >= 0))
+    reader.fail("covariance", "must not have a negative diagonal");
+  reader.finish();
+  return covariance;
 }
 
 void read_light_plane(JsonReader reader, LaserLineCalibration& calibration) {
@@ -113,6 +109,20 @@ std::vector<Pose> read_steps(JsonReader& reader) {
   return poses;
 }
 
+// A pair as it is taken; disparities as far as those of rectified pairs.
+StereoSetup read_rig(JsonReader& reader) {
+  StereoRig rig{read_camera(reader.object("left")), read_camera(reader.object("right"))};
+  rig.right_from_left =
+      pose_from_json(reader.value("right_from_left"), reader.place() + "/right_from_left");
+  const double nearest_m = reader.length_m("nearest"), farthest_m = reader.length_m("farthest");
+  try {
+    const Rectification turned = rectify(rig, nearest_m, farthest_m);
+    return {turned.calibration, turned};
+  } catch (const Error& error) {
+    throw Error(Trouble::input, reader.place() + ": " + error.what());
+  }
+}
+
 // Opens a calibration of one kind of device, hands it to `read` and refuses what that left over.
 template <class Read>
 auto read_calibration(const std::filesystem::path& path, const std::string& device, Read read) {
@@ -120,6 +130,7 @@ auto read_calibration(const std::filesystem::path& path, const std::string& devi
   JsonReader reader(document, path.string());
   if (const std::string given = reader.text("device"); given != device)
     reader.fail("device", "is '" + given + "', must be '" + device + "'");
+  if (device != "camera") reader.has("uncertainty");  // for readers of the file, not for decoding
   auto calibration = read(reader);
   reader.finish();
   return calibration;
@@ -141,9 +152,11 @@ LaserLineSetup read_laser_line_calibration(const std::filesystem::path& path) {
   });
 }
 
-StereoCalibration read_stereo_calibration(const std::filesystem::path& path) {
-  if (lower_case(path.extension().string()) == ".txt") return read_middlebury_calibration(path);
+StereoSetup read_stereo_calibration(const std::filesystem::path& path) {
+  if (lower_case(path.extension().string()) == ".txt")
+    return {read_middlebury_calibration(path), {}};
   return read_calibration(path, "stereo", [](JsonReader& reader) {
+    if (reader.has("left")) return read_rig(reader);
     constexpr long largest = 1 << 20, zero = 0;
     StereoCalibration calibration;
     calibration.width_px = whole(reader, "width_px", 1, largest);
@@ -155,7 +168,7 @@ StereoCalibration read_stereo_calibration(const std::filesystem::path& path) {
     calibration.baseline_m = positive(reader, "baseline", reader.length_m("baseline"));
     calibration.min_disparity_px = whole(reader, "min_disparity_px", -largest, largest, &zero);
     calibration.disparities_px = whole(reader, "disparities_px", 1, largest);
-    return calibration;
+    return StereoSetup{calibration, {}};
   });
 }
 
@@ -196,56 +209,14 @@ WaveformSetup read_waveform_calibration(const std::filesystem::path& path) {
   });
 }
 
-ordered_json calibration_json(const StripeImages& frames) {
-  const LaserLineCalibration& c = frames.calibration;
-  const Eigen::Vector3d& n = c.plane_normal;
-  ordered_json steps = ordered_json::array();
-  for (const Pose& pose : frames.scanner_from_camera) steps.push_back(to_json(pose));
-  return {{"device", "laser-line"},
-          {"camera", to_json(c.camera)},
-          {"sensor", to_json(c.sensor)},
-          {"light_plane", {{"normal", {n.x(), n.y(), n.z()}}, {"offset_m", c.plane_offset_m}}},
-          {"min_range_m", c.min_range_m},
-          {"max_range_m", c.max_range_m},
-          {"scanner_from_camera", steps}};
-}
-
-ordered_json calibration_json(const ImagePair& frames) {
-  const StereoCalibration& c = frames.calibration;
-  return {{"device", "stereo"},
-          {"width_px", c.width_px},
-          {"height_px", c.height_px},
-          {"focal_px", c.focal_px},
-          {"cx_px", c.cx_px},
-          {"cy_px", c.cy_px},
-          {"doffs_px", c.doffs_px},
-          {"baseline_m", c.baseline_m},
-          {"min_disparity_px", c.min_disparity_px},
-          {"disparities_px", c.disparities_px}};
-}
-
-ordered_json calibration_json(const PhaseTaps& frames) {
-  const PhaseCalibration& c = frames.calibration;
-  return {{"device", "phase"},
-          {"camera", to_json(c.camera)},
-          {"sensor", to_json(c.sensor)},
-          {"frequencies_hz", c.frequencies_hz},
-          {"max_range_m", c.max_range_m}};
-}
-
-ordered_json calibration_json(const Waveforms& frames) {
-  const WaveformCalibration& c = frames.calibration;
-  return {{"device", "waveform"},
-          {"sensor", to_json(c.sensor)},
-          {"sample_interval_s", c.sample_interval_s},
-          {"window_start_s", c.window_start_s},
-          {"pulse_sigma_s", c.pulse_sigma_s},
-          {"range_walk_s", c.range_walk_s},
-          {"range_walk_electrons", c.range_walk_electrons},
-          {"gated", !frames.first_sample.empty()},
-          {"moving", !frames.scanner_from_ray.empty()},
-          {"rows", frames.grid.rows},
-          {"columns", frames.grid.columns}};
+CameraSetup read_camera_calibration(const std::filesystem::path& path) {
+  return read_calibration(path, "camera", [](JsonReader& reader) {
+    CameraSetup setup{read_camera(reader.object("camera")), CameraCovariance::Zero(), {}};
+    if (reader.has("sensor")) setup.sensor = read_sensor(reader.object("sensor"));
+    if (reader.has("uncertainty"))
+      setup.covariance = read_uncertainty(reader.object("uncertainty"));
+    return setup;
+  });
 }
 
 }  // namespace scan

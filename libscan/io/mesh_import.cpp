@@ -6,6 +6,7 @@
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
+#include <cmath>
 #include <exception>
 
 #include "libscan/core/error.h"
@@ -20,12 +21,18 @@ Eigen::Vector3d vertex_of(const aiMesh& part, unsigned index, const std::string&
     throw Error(Trouble::input, name + ": a triangle names vertex " + std::to_string(index) +
                                     " of " + std::to_string(part.mNumVertices));
   const aiVector3D& v = part.mVertices[index];
-  return {v.x, v.y, v.z};
+  const Eigen::Vector3d vertex(v.x, v.y, v.z);
+  if (!vertex.allFinite())
+    throw Error(Trouble::input, name + ": vertex " + std::to_string(index) + " is not finite");
+  return vertex;
 }
 
 // assimp turns glTF's places on a picture upside down.
-Eigen::Vector2d place_of(const aiMesh& part, unsigned index) {
+Eigen::Vector2d place_of(const aiMesh& part, unsigned index, const std::string& name) {
   const aiVector3D& place = part.mTextureCoords[0][index];
+  if (!std::isfinite(place.x) || !std::isfinite(place.y))
+    throw Error(Trouble::input, name + ": the place of vertex " + std::to_string(index) +
+                                    " on the picture is not finite");
   return {place.x, 1 - place.y};
 }
 
@@ -38,7 +45,7 @@ void append(const aiMesh& part, const std::string& name, Welder& welder,
     for (unsigned k = 0; k < 3; ++k) corners[k] = vertex_of(part, face.mIndices[k], name);
     if (!welder.add(corners) || !part.HasTextureCoords(0)) continue;
     places.emplace_back();
-    for (unsigned k = 0; k < 3; ++k) places.back()[k] = place_of(part, face.mIndices[k]);
+    for (unsigned k = 0; k < 3; ++k) places.back()[k] = place_of(part, face.mIndices[k], name);
   }
 }
 

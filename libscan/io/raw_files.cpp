@@ -73,13 +73,14 @@ StripeImages read_stripes(const Paths& inputs, const std::filesystem::path& cali
 }
 
 ImagePair read_pair(const Paths& inputs, const std::filesystem::path& calibration) {
-  ImagePair pair{read_stereo_calibration(calibration), {}, {}};
+  const StereoSetup setup = read_stereo_calibration(calibration);
+  ImagePair pair{setup.calibration, {}, {}};
   const Paths paths = files_of(inputs, {"left.png", "right.png"});
   pair.left = read_grey8(paths[0]);
   pair.right = read_grey8(paths[1]);
   check_size(pair.left, pair.calibration.width_px, pair.calibration.height_px, paths[0]);
   check_size(pair.right, pair.calibration.width_px, pair.calibration.height_px, paths[1]);
-  return pair;
+  return setup.rectification ? rectify(*setup.rectification, pair.left, pair.right) : pair;
 }
 
 PhaseTaps read_taps(const Paths& inputs, const std::filesystem::path& calibration) {

@@ -9,10 +9,13 @@
 //   laser-line    camera, sensor, "light_plane": { "normal": [3], offset_mm }, [min_range_mm,
 //                 max_range_mm], "scanner_from_camera": [4x4, ... one per image]
 //   stereo        width_px, height_px, focal_px, cx_px, cy_px, [doffs_px], baseline_mm,
-//                 [min_disparity_px], disparities_px
+//                 [min_disparity_px], disparities_px; of a pair that is not rectified instead:
+//                 "left": camera, "right": camera, "right_from_left": 4x4, nearest_mm, farthest_mm
 //   phase         camera, sensor, frequencies_mhz: [...], [max_range_m]
 //   waveform      sensor, sample_interval_ns, [window_start_ns], pulse_sigma_ns, [rows, columns],
 //                 [range_walk_ns, range_walk_electrons], ["gated": true], ["moving": true]
+//   any           ["uncertainty": what calibrating found, which decoding does not use]
+// "device": "camera" holds a camera by itself, as `scan calibrate camera` writes it, and [sensor].
 // Keys in brackets have the defaults of libscan/core/raw_frames.h.
 //
 // Files of a folder: 000.png, 001.png, ... (laser-line); left.png, right.png; frequency_0_tap_0.png

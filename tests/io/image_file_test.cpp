@@ -167,6 +167,13 @@ TEST(Npy, RefusesShapesThatDoNotFitAndForeignTypes) {
                          [](const std::string& bytes) { decode_npy(bytes, "damaged.npy"); });
 }
 
+// What a broken file holds is quoted, and must not break the message's one line.
+TEST(Npy, SaysInOneLineWhatIsBroken) {
+  const std::string said =
+      error_of([] { decode_npy(npy_by_hand("<f4", "(2\n, 1\x1b)", "12345678"), "a.npy"); });
+  EXPECT_EQ(said.find_first_of("\n\x1b"), std::string::npos) << said;
+}
+
 TEST(RealData, MotorcycleDisparityEqualsItsPfm) {
   const auto folder = outside_data() / "middlebury-motorcycle";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the stereo pair is not in " << folder;

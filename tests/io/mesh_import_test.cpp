@@ -93,6 +93,16 @@ TEST(Gltf, ReadsTextureCoordinates) {
   }
 }
 
+TEST(Gltf, RefusesVerticesThatAreNotFinite) {
+  const TemporaryFolder folder;
+  std::string bytes = buffer();
+  bytes.replace(0, 4, std::string("\x00\x00\xc0\x7f", 4));  // NaN
+  write_file(folder / "a.bin", bytes);
+  write_file(folder / "a.gltf", document(R"("uri":"a.bin",)"));
+  EXPECT_NE(error_of([&] { read_gltf(folder / "a.gltf"); }).find("vertex 0 is not finite"),
+            std::string::npos);
+}
+
 TEST(Gltf, RefusesPromisesThatDoNotHold) {
   const TemporaryFolder folder;
   write_file(folder / "a.bin", buffer());

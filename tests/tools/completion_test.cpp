@@ -36,12 +36,13 @@ TEST(Completion, OffersCommandsOptionsAndTheirWords) {
   EXPECT_EQ(offered("scan align --m"), "--method --max-distance");
   EXPECT_EQ(offered("scan reconstruct --method s"), "ssd scale-space");
   EXPECT_EQ(offered("scan acquire st"), "stereo");
+  EXPECT_EQ(offered("scan calibrate l"), "light-plane");
   EXPECT_EQ(offered("scan info ''"), "");  // files, which are the shell's affair
 }
 
 // The help is made by the parser itself, so it is what the program takes.
 TEST(Completion, HasTheOptionsOfEachCommandsHelp) {
-  for (const char* command : {"run", "simulate", "acquire", "align", "reconstruct", "verify",
+  for (const char* command : {"run", "simulate", "calibrate", "acquire", "align", "reconstruct", "verify",
                               "tradeoff", "report", "info", "convert", "schema", "version"}) {
     std::string help = run_scan({command, "--help"}).out;
     help = help.substr(0, help.find("Example:"));

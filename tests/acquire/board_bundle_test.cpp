@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/acquire/board_bundle.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/calib3d.hpp>
+
+#include "libscan/acquire/board_start.h"
+#include "libscan/core/error.h"
+#include "tests/acquire/board_pictures.h"
+
+namespace scan::calibrating {
+namespace {
+
+using test::bent_camera;
+using test::held_boards;
+using test::test_board;
+
+TEST(ProjectWithDerivatives, AgreesWithProjectAndItsDifferences) {
+  Camera camera = bent_camera();
+  camera.k3 = 0.03;
+  const Eigen::Vector3d x(0.12, -0.09, 0.4);
+  const Projection seen = project_with_derivatives(camera, x);
+  EXPECT_LT((seen.pixel - project(camera, x).value()).norm(), 1e-12);
+  // Central differences: error h^2 f''' / 6 (1e-8 of the value) and rounding 1e-13 / h.
+  for (int i = 0; i < 3; ++i) {
+    const double h = 1e-6;
+    const Eigen::Vector3d by = h * Eigen::Vector3d::Unit(i);
+    const Eigen::Vector2d slope =
+        (project(camera, x + by).value() - project(camera, x - by).value()) / (2 * h);
+    EXPECT_LT((slope - seen.by_point.col(i)).norm(), 1e-6 * seen.by_point.norm());
+  }
+  for (int i = 0; i < camera_unknowns; ++i) {
+    const double h = i < 4 ? 1e-2 : 1e-5;  // linear in each unknown: rounding only
+    const CameraVector by = h * CameraVector::Unit(i);
+    const auto at = [&](double sign) {
+      return project(with_unknowns(camera, unknowns_of(camera) + sign * by), x).value();
+    };
+    EXPECT_LT(((at(1) - at(-1)) / (2 * h) - seen.by_camera.col(i)).norm(), 1e-7) << i;
+  }
+}
+
+// One camera with noisy corners; OpenCV minimises the same squares and is the oracle.
+TEST(BoardBundle, FindsWhatOpenCvFindsWithItsDeviations) {
+  const Camera truth = bent_camera();
+  RandomStream random(1, 0, 0);
+  std::vector<BoardSighting> seen;
+  for (const Pose& pose : held_boards(truth, test_board, 3, 8))
+    seen.push_back(test::sighting(truth, test_board, pose, 0.1, random));
+  Bundle bundle{.board_m = corners_m(test_board), .cameras = {first_camera(test_board, seen)}};
+  std::vector<std::vector<cv::Point3f>> objects;
+  std::vector<std::vector<cv::Point2f>> pictures;
+  for (BoardSighting& sighting : seen) {
+    objects.emplace_back();
+    for (const auto& x : bundle.board_m)
+      objects.back().emplace_back(static_cast<float>(x.x()), static_cast<float>(x.y()), 0.0F);
+    pictures.emplace_back();
+    for (auto& corner : sighting.corners_px) {  // OpenCV takes floats: both get the same ones
+      corner = corner.cast<float>().cast<double>();
+      pictures.back().emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
+    }
+    bundle.pictures.push_back(
+        {{sighting.corners_px}, first_pose(bundle.cameras[0], test_board, sighting.corners_px)});
+  }
+  const BundleFit fit = adjust(bundle);
+  EXPECT_TRUE(fit.converged);
+  cv::Mat matrix, terms, deviations, unused, errors;
+  std::vector<cv::Mat> turns, shifts;
+  const double rms_px = cv::calibrateCamera(
+      objects, pictures, {truth.width_px, truth.height_px}, matrix, terms, turns, shifts,
+      deviations, unused, errors, cv::CALIB_FIX_K3,
+      cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 500, 1e-15));
+  CameraVector theirs;
+  theirs << matrix.at<double>(0, 0), matrix.at<double>(1, 1), matrix.at<double>(0, 2),
+      matrix.at<double>(1, 2), terms.at<double>(0), terms.at<double>(1), terms.at<double>(2),
+      terms.at<double>(3), 0;
+  const CameraVector difference = unknowns_of(fit.bundle.cameras[0]) - theirs;
+  // OpenCV 4.6 divides the squares by points less unknowns, where coordinates (twice as many) less
+  // unknowns belong: 376 for 808.
+  const double coordinates = 2.0 * 8 * 54, unknowns = 8 + 6 * 8;
+  const double factor = std::sqrt((coordinates / 2 - unknowns) / (coordinates - unknowns));
+  for (int i = 0; i < 8; ++i) {
+    const double sigma = fit.sigma_px * std::sqrt(fit.cofactor(i, i));
+    // Board points as floats are off by 6e-9 of 0.2 m: 1e-5 px, a ten-thousandth of the noise.
+    EXPECT_LT(std::abs(difference[i]), 0.01 * sigma) << i;
+    EXPECT_NEAR(factor * deviations.at<double>(i), sigma, 0.01 * sigma) << i;
+  }
+  EXPECT_NEAR(fit.rms_px, rms_px, 1e-6);
+}
+
+TEST(BoardBundle, NeedsMoreCoordinatesThanUnknowns) {
+  Bundle bundle{.board_m = {Eigen::Vector3d::Zero()}, .cameras = {bent_camera()}};
+  bundle.pictures.push_back({{{Eigen::Vector2d(1, 2)}}});
+  EXPECT_THROW(adjust(bundle), Error);
+}
+
+}  // namespace
+}  // namespace scan::calibrating
