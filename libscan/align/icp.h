@@ -8,7 +8,7 @@
 //
 // No parameter bears a unit: partners must lie within the reach of the target's local fits, and a
 // Welsch loss whose scale follows the residuals, narrowing in steps (graduated non-convexity, Yang
-// et al. 2020), settles which of them count.
+// et al. 2020), settles which count. A rest rougher than the scans is sought anew, gates wider.
 #pragma once
 
 #include <functional>
@@ -83,7 +83,7 @@ struct IcpResult {
   Matrix6 information = Matrix6::Zero();
   // "slide along ...", "turn about ..." in the target frame.
   std::vector<std::string> weak_directions;
-  std::vector<IcpState> history;   // of the last descent from the guess
+  std::vector<IcpState> history;   // of the descent that led here, its gates closed
   std::size_t invalid_points = 0;  // not finite, left out, both clouds together
   double guess_off_rotation = 0;  // Frobenius distance of the guess's matrix from the rotation used
   Cost cost;

@@ -176,6 +176,12 @@ bool IcpIteration::settle(const State& state, Step step) {
   return near;
 }
 
+void IcpIteration::count_iteration(IcpResult& result) const {
+  ++result.iterations;
+  if (options_.on_iteration)
+    options_.on_iteration(result.iterations, global_pose(pose_, source_, target_));
+}
+
 // One step. Returns whether another one may follow.
 bool IcpIteration::iterate(IcpResult& result) {
   const State state = narrow();
@@ -189,9 +195,7 @@ bool IcpIteration::iterate(IcpResult& result) {
     done = fitting_scale_m() >= least_narrowing * weighing_.loss.scale_m;
   else
     done = small(accept_lower(state, step), state.frame) && last_scale;
-  ++result.iterations;
-  if (options_.on_iteration)
-    options_.on_iteration(result.iterations, global_pose(pose_, source_, target_));
+  count_iteration(result);
   if (done && stride_ == 1) return false;
   if (done) sample_every(1);
   scale_in_medians_ = std::max(narrowest_scale, narrowing * scale_in_medians_);
@@ -206,8 +210,10 @@ bool IcpIteration::descend(const Pose& guess, IcpResult& result) {
   // Point-to-point is held by the points themselves: fewer would hold it elsewhere.
   const bool coarse = !creeps() && source_.size() / coarse_stride >= least_sample;
   sample_every(coarse ? std::max(coarse_stride, source_.size() / most_sample) : 1);
+  near_ = is_near();
+  if (opening_ > 0) approach(result);
   bool moving = true;
-  while (moving && result.iterations < options_.max_iterations) moving = iterate(result);
+  while (moving && may_go_on(result)) moving = iterate(result);
   if (stride_ > 1) sample_every(1);
   return moving;
 }
@@ -249,6 +255,7 @@ void IcpIteration::report(const State& state, IcpResult& result) const {
 void IcpIteration::run(const Pose& guess, IcpResult& result) {
   bool moving = descend(guess, result);
   State state = examine(weighing_);
+  if (!moving && !near_ && seek_smoother(guess, result)) state = examine(weighing_);
   // What was moved along them meant nothing: once more from the guess without.
   if (state.couples.size() >= least_pairs && !moving && withhold_more(state)) {
     result.history.clear();

@@ -27,6 +27,14 @@ class IcpIteration {
     TwistBasis weak{6, 0};
   };
 
+  // Where a descent ended, with all points of the source.
+  struct Rest {
+    Pose pose = Pose::Identity();
+    std::vector<Match> matches;
+    Weighing weighing;
+    double opening = 0;
+  };
+
   // Point-to-point's steps say little of how far it has to go.
   bool creeps() const { return options_.method == IcpMethod::point_to_point; }
   void sample_every(std::size_t stride);
@@ -40,6 +48,15 @@ class IcpIteration {
   bool small(const Vector6& twist, const DataFrame& frame) const;
   bool iterate(IcpResult& result);
   bool descend(const Pose& guess, IcpResult& result);
+  bool may_go_on(const IcpResult& result) const {
+    return result.iterations < options_.max_iterations;
+  }
+  void count_iteration(IcpResult& result) const;
+  // icp_approach.cpp
+  bool is_near() const;
+  double roughness() const;
+  void approach(IcpResult& result);
+  bool seek_smoother(const Pose& guess, IcpResult& result);
   bool withhold_more(const State& state);
   Stop judge(const State& state) const;
   void report(const State& state, IcpResult& result) const;
@@ -55,6 +72,8 @@ class IcpIteration {
   Weighing weighing_;
   double scale_in_medians_ = 0;
   bool settled_ = false;       // the scale follows the residuals no further
+  double opening_ = 0;         // share of the sample that the gates let pass at first; 0: closed
+  bool near_ = false;          // the guess
   TwistBasis withheld_{6, 0};  // at least, about withheld_frame_
   DataFrame withheld_frame_;
 };

@@ -80,6 +80,8 @@ LocalFit fit_to(std::span<const Neighbour> found, std::span<const Eigen::Vector3
     fit.shape = LocalShape::surface;
     fit.direction = eigenvector_of(moments.all, spread[0]);
     fit.tilt = tilt_of(moments, fit.direction, spread[0]).cast<float>();
+    const Eigen::Vector3d apart = points[found[1].index] - points[found[0].index];
+    fit.neighbour_off_m = static_cast<float>(std::abs(fit.direction.dot(apart)));
   }
   return fit;
 }

@@ -20,6 +20,8 @@ struct LocalFit {
   // A draw of the normal's error: half the difference of the normals that two halves of the
   // neighbours give, whose noise is independent; the fit to both errs by as much.
   Eigen::Vector3f tilt = Eigen::Vector3f::Zero();
+  // Of the nearest other point from the surface.
+  float neighbour_off_m = 0;
   // Distance to the farthest neighbour: beyond it the fit says nothing.
   float reach_m = 0;
   LocalShape shape = LocalShape::unknown;

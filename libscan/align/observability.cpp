@@ -116,6 +116,12 @@ void MotionInformation::add_mark(const Eigen::Vector3d& arm, const Eigen::Matrix
   apparent_ += m.transpose() * projector * m;
 }
 
+MotionInformation& MotionInformation::operator+=(const MotionInformation& other) {
+  apparent_ += other.apparent_, noise_ += other.noise_;
+  planes_ += other.planes_, drawn_ += other.drawn_;
+  return *this;
+}
+
 Matrix6 MotionInformation::noise() const {
   return drawn_ > 0 ? Matrix6(planes_ / drawn_ * noise_) : Matrix6::Zero();
 }

@@ -37,6 +37,8 @@ class MotionInformation {
   // A mark that fixes the coordinates along the columns of `projector`.
   void add_mark(const Eigen::Vector3d& arm, const Eigen::Matrix3d& projector);
 
+  MotionInformation& operator+=(const MotionInformation& other);
+
   const Matrix6& apparent() const { return apparent_; }
   // For all planes, from those whose error was drawn.
   Matrix6 noise() const;

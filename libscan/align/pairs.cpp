@@ -13,7 +13,9 @@
 namespace scan {
 namespace {
 
-constexpr std::size_t chunk = 512;
+// Points off the overlap take several times as long to find a partner for as others, and follow one
+// another: small chunks share them out.
+constexpr std::size_t chunk = 128;
 // Beyond three scales the loss weighs a residual with 1 % and its slope falls.
 constexpr double most_scales = 3;
 // Thickness of the planes of generalised ICP in units of their extent, where the scan does not tell
@@ -102,11 +104,11 @@ void PairFinder::find(const Pose& pose, std::span<const std::uint32_t> sample,
   const auto passes = [&](std::uint32_t i, std::uint32_t j, const Eigen::Vector3d& apart) {
     const Eigen::Vector3d& there = target_.normals[j];
     if (there.isZero(0)) return !planes;
+    const Eigen::Vector3d& here = source_.normals[i];
+    const double cosine = here.isZero(0) ? 1 : (pose.linear() * here).dot(there);
+    if (apart.squaredNorm() < open_m_ * open_m_) return !signs || cosine > 0;
     const double across_m = apart.dot(there), reach_m = reach_share * target_.fits[j].reach_m;
     if (apart.squaredNorm() - across_m * across_m > reach_m * reach_m) return false;
-    const Eigen::Vector3d& here = source_.normals[i];
-    if (here.isZero(0)) return true;
-    const double cosine = (pose.linear() * here).dot(there);
     return (signs ? cosine : std::abs(cosine)) >= least_cosine;
   };
   const auto find_all = [&](const auto& search) {

@@ -53,6 +53,10 @@ class PairFinder {
   void find(const Pose& pose, std::span<const std::uint32_t> sample,
             std::vector<Match>& matches) const;
 
+  // From now on `find` takes every pair that lies within the distance, of normals towards one side
+  // where their signs mean something, and beyond it what the gates let pass. 0: these alone.
+  void open_gates(double within_m) { open_m_ = within_m; }
+
   // Median residual of the pairs, metres; 0 for none.
   double median_residual_m(std::span<const Match> matches) const;
 
@@ -85,6 +89,7 @@ class PairFinder {
   const PreparedCloud& source_;
   const PreparedCloud& target_;
   const IcpOptions& options_;
+  double open_m_ = 0;    // see open_gates
   double spread_m_ = 0;  // along the surfaces, see metric
   double noise_m_ = 0;   // across them
 };

@@ -12,7 +12,7 @@
 namespace scan {
 namespace {
 
-constexpr std::size_t chunk = 1024;
+constexpr std::size_t chunk = 256;
 
 Vector6 row_of(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal) {
   Vector6 row;

@@ -12,7 +12,7 @@
 namespace scan {
 namespace {
 
-constexpr std::size_t chunk = 1024;
+constexpr std::size_t chunk = 256;
 // So many pairs decide what is weak; more would cost time and tell nothing new.
 constexpr std::size_t most_judged = 4096;
 
@@ -173,13 +173,12 @@ MotionInformation motion_information(const PairFinder& finder, const Pose& pose,
                                      NormalErrors errors) {
   const bool mean = finder.method() == IcpMethod::symmetric;
   const bool marks = are_marks(finder, couples);
-  MotionInformation sum;
   const std::size_t stride = std::max<std::size_t>(1, couples.size() / most_judged);
-  for (std::size_t k = 0; k < couples.size(); k += stride) {
-    const PointPair pair = finder.pair(pose, couples[k]);
+  const auto add = [&](const Couple& couple, MotionInformation& sum) {
+    const PointPair pair = finder.pair(pose, couple);
     const Eigen::Vector3d arm = (pair.target - frame.centre) / frame.size_m;
     if (marks) {
-      const LocalFit& there = finder.target().fits[couples[k].target];
+      const LocalFit& there = finder.target().fits[couple.target];
       const Eigen::Vector3d along =
           there.shape == LocalShape::line ? there.direction : Eigen::Vector3d::Zero();
       if (there.shape != LocalShape::unknown)
@@ -187,10 +186,15 @@ MotionInformation motion_information(const PairFinder& finder, const Pose& pose,
     } else if (!pair.normal.isZero(0)) {
       const Eigen::Vector3d normal =
           mean ? Eigen::Vector3d(0.5 * (pair.normal + pair.moved_normal)) : pair.normal;
-      sum.add_plane(arm, normal, normal_error(finder, pose, couples[k], pair, mean, errors));
+      sum.add_plane(arm, normal, normal_error(finder, pose, couple, pair, mean, errors));
     }
-  }
-  return sum;
+  };
+  const std::size_t judged = (couples.size() + stride - 1) / stride;
+  return ordered_sum(judged, chunk, MotionInformation{}, [&](std::size_t begin, std::size_t end) {
+    MotionInformation sum;
+    for (std::size_t k = begin; k < end; ++k) add(couples[k * stride], sum);
+    return sum;
+  });
 }
 
 }  // namespace scan

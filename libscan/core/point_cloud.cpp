@@ -70,12 +70,21 @@ void append(PointCloud& cloud, const PointCloud& other) {
 }
 
 std::vector<std::uint32_t> finite_points(const PointCloud& cloud) {
-  std::vector<std::uint32_t> indices;
-  indices.reserve(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const bool normal_ok = cloud.normals.empty() || cloud.normals[i].allFinite();
-    if (cloud.points[i].allFinite() && normal_ok) indices.push_back(static_cast<std::uint32_t>(i));
-  }
+  std::vector<std::uint32_t> indices(cloud.size());
+  std::size_t count = 0;
+  const auto keep = [&](auto&& is_finite) {
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      indices[count] = static_cast<std::uint32_t>(i);
+      count += is_finite(i);
+    }
+  };
+  // What is not finite is no longer zero when taken from itself: no branch to foretell.
+  const auto all_finite = [](const Eigen::Vector3d& x) { return (x - x).sum() == 0; };
+  if (cloud.normals.empty())
+    keep([&](std::size_t i) { return all_finite(cloud.points[i]); });
+  else
+    keep([&](std::size_t i) { return all_finite(cloud.points[i]) & all_finite(cloud.normals[i]); });
+  indices.resize(count);
   return indices;
 }
 

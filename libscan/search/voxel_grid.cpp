@@ -3,7 +3,6 @@
 #include "libscan/search/voxel_grid.h"
 
 #include <array>
-#include <cmath>
 #include <string>
 
 #include "libscan/core/error.h"
@@ -13,16 +12,20 @@ namespace {
 
 using Key = std::array<std::int64_t, 3>;
 
+// Odd multiples of the places, whose sum the finalizer of splitmix64 (Steele, Lea, Flood, OOPSLA
+// 2014) mixes: every bit reaches every bit.
 std::uint64_t hash_of(const Key& key) {
-  std::uint64_t hash = 0;
-  for (const std::int64_t k : key) {
-    // The finalizer of splitmix64 (Steele, Lea, Flood, OOPSLA 2014): every bit reaches every bit.
-    hash = (hash ^ static_cast<std::uint64_t>(k)) + 0x9e3779b97f4a7c15u;
-    hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
-    hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
-    hash ^= hash >> 31;
-  }
-  return hash;
+  std::uint64_t hash = static_cast<std::uint64_t>(key[0]) * 0x9e3779b97f4a7c15u +
+                       static_cast<std::uint64_t>(key[1]) * 0xd1342543de82ef95u +
+                       static_cast<std::uint64_t>(key[2]) * 0xaf251af3b0f025b5u;
+  hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
+  hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
+  return hash ^ (hash >> 31);
+}
+
+// Spelt out: std::array compares bytes by a call.
+bool same(const Key& a, const Key& b) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
 // Numbers keys by first appearance. Open addressing with linear probing (Knuth, TAOCP 3, 6.4 L).
@@ -43,7 +46,8 @@ class KeyNumbers {
   // Where the key is, or else belongs.
   std::size_t slot_of(const Key& key) const {
     std::size_t at = hash_of(key) & (slots_.size() - 1);
-    while (slots_[at] != empty && keys_[slots_[at]] != key) at = (at + 1) & (slots_.size() - 1);
+    while (slots_[at] != empty && !same(keys_[slots_[at]], key))
+      at = (at + 1) & (slots_.size() - 1);
     return at;
   }
   void grow() {
@@ -67,7 +71,7 @@ void check_side(const Bounds& box, double side_m) {
 Key key_of(const Eigen::Vector3d& point, const Bounds& box, double side_m) {
   Key key;
   for (int axis = 0; axis < 3; ++axis)
-    key[axis] = static_cast<std::int64_t>(std::floor((point[axis] - box.min()[axis]) / side_m));
+    key[axis] = static_cast<std::int64_t>((point[axis] - box.min()[axis]) / side_m);  // not below 0
   return key;
 }
 

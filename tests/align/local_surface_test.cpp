@@ -95,5 +95,16 @@ TEST(LocalFits, TiltIsADrawOfTheNormalsError) {
   EXPECT_NEAR(product / std::sqrt(tilt2 * error2), 0, 0.1);
 }
 
+// A point 0.1 above a sheet of unit steps, 0.3 beside one of its points. It tilts the fit by
+// 0.1 * 0.3 over a sum of squares of at least 10, which brings it nearer by 1 % at most.
+TEST(LocalFits, KnowHowFarTheNearestPointLiesOff) {
+  std::vector<Vector3d> points = {{0.3, 0, 0.1}};
+  for (int i = -3; i <= 3; ++i)
+    for (int j = -3; j <= 3; ++j) points.emplace_back(i, j, 0);
+  const LocalFit fit = fits_of(points)[1 + 3 * 7 + 3];
+  EXPECT_EQ(fit.shape, LocalShape::surface);
+  EXPECT_NEAR(fit.neighbour_off_m, 0.1, 0.001);
+}
+
 }  // namespace
 }  // namespace scan

@@ -102,5 +102,20 @@ TEST(SolveWithholding, LeavesTheWithheldMotionAlone) {
   EXPECT_LT(gradient.norm(), 1e-9 * (a * x).norm());
 }
 
+TEST(MotionInformation, OfPartsAddsUpToThatOfTheWhole) {
+  MotionInformation whole, parts[2], sum;
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    RandomStream random(9, 0, i);
+    const Vector3d arm = test::random_direction(random), normal = test::random_direction(random);
+    std::optional<Vector3d> error;
+    if (i % 3 != 0) error = 0.1 * test::random_direction(random);
+    whole.add_plane(arm, normal, error);
+    parts[i % 2].add_plane(arm, normal, error);
+  }
+  for (const MotionInformation& part : parts) sum += part;
+  EXPECT_TRUE(sum.apparent().isApprox(whole.apparent(), 1e-14));
+  EXPECT_TRUE(sum.noise().isApprox(whole.noise(), 1e-14));
+}
+
 }  // namespace
 }  // namespace scan

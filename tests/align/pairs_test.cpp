@@ -98,6 +98,31 @@ TEST(PairFinder, AWayInManyStepsChangesNothing) {
   }
 }
 
+// The sheet's points beyond the rim pair within the opening, wherever they lie; the other way round
+// none does, and closed again all is as before.
+TEST(PairFinder, OpenGatesTakeWhatLiesWithin) {
+  PointCloud source = test::plane(5000, 3);
+  const PointCloud target = test::plane(5000, 4);
+  Problem problem(source, target);
+  const std::vector<Match> before = problem.find(shift(3, 0, 0));
+  problem.finder.open_gates(2);
+  const std::vector<Match> open = problem.find(shift(3, 0, 0));
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const Vector3d at = problem.source.points[i] + problem.source.origin + Vector3d(3, 0, 0);
+    const double off_m =
+        (at - problem.target.points[open[i].target] - problem.target.origin).norm();
+    EXPECT_EQ(open[i].residual_m < unlimited_m, off_m <= 2) << at.transpose();
+  }
+  problem.finder.open_gates(0);
+  const std::vector<Match> closed = problem.find(shift(3, 0, 0));
+  for (std::size_t i = 0; i < closed.size(); ++i)
+    EXPECT_EQ(closed[i].residual_m, before[i].residual_m);
+  for (Vector3d& normal : source.normals) normal = -normal;
+  Problem turned(source, target);
+  turned.finder.open_gates(2);
+  for (const Match& match : turned.find(shift(3, 0, 0))) EXPECT_EQ(match.residual_m, unlimited_m);
+}
+
 TEST(PairFinder, NormalsThatDisagreeDoNotPair) {
   const PointCloud cloud = test::plane(500, 6);
   PointCloud flipped = cloud;

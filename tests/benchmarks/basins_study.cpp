@@ -4,8 +4,10 @@
 // six shapes and four overlaps, libscan's methods beside PCL's and Open3D's; and how fast.
 //
 //   basins_study trials FOLDER STARTS SHAPE...   writes FOLDER/SHAPE.csv, on one thread; goes on
-//                                                where an earlier call was ended
+//                                                where an earlier call was ended, each method for
+//                                                itself: of one that has changed delete the rows
 //   basins_study figures FOLDER OUT              tables and pictures of all trials in FOLDER
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -48,8 +50,19 @@ double processor_s() {
   return double(std::clock()) / CLOCKS_PER_SEC;
 }
 
-void try_all(const PairCase& pair, Trial trial, std::vector<Trial>& trials) {
-  for (const AlignPeer& method : methods()) {
+constexpr std::size_t of_a_start = overlaps.size() * (turns_deg.size() + shifts_percent.size());
+
+// How many starts of a shape a method has been through.
+std::size_t starts_of(const std::string& method, const std::vector<Trial>& trials) {
+  return static_cast<std::size_t>(
+             std::count_if(trials.begin(), trials.end(),
+                           [&](const Trial& trial) { return trial.method == method; })) /
+         of_a_start;
+}
+
+void try_all(const PairCase& pair, Trial trial, const std::vector<AlignPeer>& methods,
+             std::vector<Trial>& trials) {
+  for (const AlignPeer& method : methods) {
     const double begin_s = processor_s();
     const Outcome outcome = method.align(pair);
     trial.seconds = processor_s() - begin_s;
@@ -61,20 +74,21 @@ void try_all(const PairCase& pair, Trial trial, std::vector<Trial>& trials) {
 }
 
 // One start of every overlap and offset, all from pairs of the same seed.
-void add_start(const std::string& shape, std::uint64_t seed, std::vector<Trial>& trials) {
+void add_start(const std::string& shape, std::uint64_t seed, const std::vector<AlignPeer>& methods,
+               std::vector<Trial>& trials) {
   for (const double overlap : overlaps) {
     PairCase pair = basin_pair(shape, overlap, points, seed);
     Trial trial{.shape = shape, .overlap = overlap};
     for (const double turn_deg : turns_deg) {
       start_off(pair, turn_deg, 0, seed);
       trial.turn_deg = turn_deg;
-      try_all(pair, trial, trials);
+      try_all(pair, trial, methods, trials);
     }
     trial.turn_deg = 0;
     for (const double shift_percent : shifts_percent) {
       start_off(pair, 0, shift_percent / 100, seed);
       trial.shift_percent = shift_percent;
-      try_all(pair, trial, trials);
+      try_all(pair, trial, methods, trials);
     }
   }
 }
@@ -87,12 +101,12 @@ void make_trials(const std::filesystem::path& folder, std::size_t starts,
   for (const Trial& trial : read_trials(folder))
     for (std::size_t i = 0; i < shapes.size(); ++i)
       if (shapes[i] == trial.shape) trials[i].push_back(trial);
-  const std::size_t of_a_start =
-      overlaps.size() * (turns_deg.size() + shifts_percent.size()) * methods().size();
   for (std::size_t k = 0; k < starts; ++k)
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      if (trials[i].size() > k * of_a_start) continue;
-      add_start(shapes[i], k + 1, trials[i]);
+      std::vector<AlignPeer> missing = methods();
+      std::erase_if(missing, [&](const AlignPeer& m) { return starts_of(m.name, trials[i]) > k; });
+      if (missing.empty()) continue;
+      add_start(shapes[i], k + 1, missing, trials[i]);
       write_trials(folder / (shapes[i] + ".csv"), trials[i]);
     }
 }
