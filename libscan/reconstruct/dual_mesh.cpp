@@ -220,11 +220,12 @@ SharpReport make_dual(SurfaceResult& result, std::span<const Eigen::Vector3d> po
   const Mesh mesh = dual.mesh();
   std::vector<std::uint32_t> vertex_of;
   result.surface = kept_triangles(mesh, std::vector<char>(mesh.triangles.size(), 1), vertex_of);
-  if (!result.standard_error_m.empty()) {
-    std::vector<double> errors = means_of(result.standard_error_m, members);
-    for (const std::uint32_t corner : dual.corner_beside()) errors.push_back(errors[corner]);
-    result.standard_error_m.clear();
-    for (const std::uint32_t v : vertex_of) result.standard_error_m.push_back(errors[v]);
+  for (std::vector<double>* values : {&result.standard_error_m, &result.vertex_smoothing_m}) {
+    if (values->empty()) continue;
+    std::vector<double> of_dual = means_of(*values, members);
+    for (const std::uint32_t corner : dual.corner_beside()) of_dual.push_back(of_dual[corner]);
+    values->clear();
+    for (const std::uint32_t v : vertex_of) values->push_back(of_dual[v]);
   }
   result.support_m = distance_to_points(result.surface, points);
   return report_of(placed);

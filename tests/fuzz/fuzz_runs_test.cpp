@@ -20,14 +20,24 @@ TEST(Fuzz, RunFolder) {
   fuzz(folder / "stages.json", [](const auto& path) {
     (void)is_done(open_run_folder(path.parent_path(), RunStart::resume), "reconstruct", "0");
   });
-  write_file(folder / "alignment.json",
-             R"({"scans": [{"file": "000.ply", "world_from_scan":
-                [[1, 0, 0, 0.5], [0, 1, 0, 0.25], [0, 0, 1, 2], [0, 0, 0, 1]],
-                "covariance": [[1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],[0,0,0,1,0,0],
-                [0,0,0,0,1,0],[0,0,0,0,0,1]], "covariance_centre_m": [0, 0, 0]}]})");
+  write_file(folder / "alignment.json", R"({
+      "scans": [{"file": "000.ply", "world_from_scan":
+          [[1, 0, 0, 0.5], [0, 1, 0, 0.25], [0, 0, 1, 2], [0, 0, 0, 1]],
+          "covariance": [[1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],[0,0,0,1,0,0],
+          [0,0,0,0,1,0],[0,0,0,0,0,1]], "covariance_centre_m": [0, 0, 0]},
+        {"file": "001.ply", "world_from_scan":
+          [[1, 0, 0, 1.5], [0, 1, 0, 0.25], [0, 0, 1, 2], [0, 0, 0, 1]]}],
+      "covariances_between": [{"scans": [0, 1], "covariance": [[1,0,0,0,0,0],[0,1,0,0,0,0],
+          [0,0,1,0,0,0],[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]]}]})");
   fuzz(folder / "alignment.json", [](const auto& path) {
-    for (const auto& pose : read_run_stated_poses(path.parent_path()))
+    const StatedPoses poses = read_run_stated_poses(path.parent_path());
+    for (const auto& pose : poses.scans)
       if (pose) expect_finite("a covariance", pose->covariance);
+    for (const CommonCovariance& couple : poses.between) {
+      expect_finite("a covariance between scans", couple.covariance);
+      if (couple.first >= couple.second || couple.second >= poses.scans.size())
+        throw std::logic_error("a covariance between scans that are not there");
+    }
   });
 }
 

@@ -136,14 +136,19 @@ TEST(DualMesh, HasSharpEdgesAndCorners) {
 
 TEST(DualMesh, KnowsWhatTheSurfaceKnew) {
   SurfaceResult result = level_set(5, ball);
-  for (const auto& v : result.surface.vertices) result.standard_error_m.push_back(1 + v[0]);
+  for (const auto& v : result.surface.vertices) {
+    result.standard_error_m.push_back(1 + v[0]);
+    result.vertex_smoothing_m.push_back(2 + v[1]);
+  }
   make_dual(result, somewhere);
   ASSERT_EQ(result.standard_error_m.size(), result.surface.vertices.size());
+  ASSERT_EQ(result.vertex_smoothing_m.size(), result.surface.vertices.size());
   for (std::size_t v = 0; v < result.support_m.size(); ++v) {
     EXPECT_NEAR(result.support_m[v], (result.surface.vertices[v] - centre).norm(), 1e-12);
     // The mean of places in the vertex' own cell.
-    EXPECT_NEAR(result.standard_error_m[v], 1 + result.surface.vertices[v][0],
-                result.finest_cell_m);
+    const Eigen::Vector3d& place = result.surface.vertices[v];
+    EXPECT_NEAR(result.standard_error_m[v], 1 + place[0], result.finest_cell_m);
+    EXPECT_NEAR(result.vertex_smoothing_m[v], 2 + place[1], result.finest_cell_m);
   }
 }
 
