@@ -17,11 +17,10 @@ namespace {
 constexpr double frame_sizes = 5;
 constexpr std::uint32_t none = no_point;
 
-// How far a ball's centre may be from those it does for, in spacings of the points, and their
-// points from its surface, by what facets between points leave of a curved surface: spacing^2 / 8
+// How far a ball's centre may be from those it does for, in spacings of the points; their points
+// may be as far from its surface as facets between points are from a curved one, spacing^2 / 8
 // radius.
 constexpr double beside_spacings = 0.5;
-constexpr double gap_share = 0.25;
 
 void append_frame(std::vector<Eigen::Vector3d>& points) {
   const Bounds box = bounds_of(points);
@@ -129,7 +128,7 @@ std::vector<std::uint32_t> stand_ins(const std::vector<Pole>& poles,
       const std::uint32_t touched = poles[n.index].point;
       const double gap = (points[touched] - ball.centre).norm() - ball.radius;
       if (stand_in[n.index] == none && poles[n.index].is_outer == poles[i].is_outer &&
-          gap * 8 * ball.radius <= gap_share * spacing[touched] * spacing[touched])
+          gap * 8 * ball.radius <= spacing[touched] * spacing[touched])
         stand_in[n.index] = i;
     }
     stand_in[i] = i;

@@ -27,7 +27,7 @@ void expect_closed(const Mesh& mesh, long genus) {
 
 // A ring of tube radius 0.35, sampled every 0.05 along and around: no place of it is farther than
 // d = 0.0354 from a sample (outside it is 1.35 times as far along). Facets between samples are off
-// by their sagitta, d^2 / 2 r for the tube, and a ball that does for others by a quarter of
+// by their sagitta, d^2 / 2 r for the tube, and a ball that does for others by
 // spacing^2 / 8 r.
 TEST(PowerCrust, IsNearARing) {
   constexpr double r = 0.35, spacing = 0.05;
@@ -45,7 +45,7 @@ TEST(PowerCrust, IsNearARing) {
   const SurfaceResult result = crust_of(ring, spacing);
   expect_closed(result.surface, 1);
   const double farthest = 0.5 * std::hypot(1.1 * spacing * 1.35, 1.1 * spacing);
-  const double limit = farthest * farthest / (2 * r) + 0.25 * spacing * spacing / (8 * r);
+  const double limit = farthest * farthest / (2 * r) + spacing * spacing / (8 * r);
   for (const auto& x : result.surface.vertices)
     EXPECT_NEAR(std::hypot(std::hypot(x[0], x[1]) - 1, x[2]), r, limit);
   EXPECT_GT(volume_m3(result.surface), 0);  // faces outwards
