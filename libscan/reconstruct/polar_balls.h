@@ -10,10 +10,11 @@
 
 namespace scan {
 
-// Two balls and how surely they lie on the same side of the surface, or on different sides.
+// Two balls and how surely they lie on the same side of the surface, or on different sides; 0: they
+// meet without saying.
 struct PolarTie {
   std::uint32_t first = 0, second = 0;
-  double certainty = 0;  // above 0, at most 1
+  double certainty = 0;  // at most 1
   bool is_same_side = true;
 };
 
@@ -37,7 +38,8 @@ PolarBalls polar_balls(std::span<const Eigen::Vector3d> points, std::span<const 
 double same_side_certainty(const Ball& a, const Ball& b);
 
 // Whether each ball lies inside, from the outer ones on, the surest next (ibid., section 3.3).
-// Balls that no tie reaches are outside.
+// Balls that no tie reaches lie beyond a layer of points that scatter: on the other side than those
+// that they meet.
 std::vector<char> label_inside(std::size_t balls, std::span<const PolarTie> ties,
                                std::span<const char> is_outer);
 

@@ -145,10 +145,9 @@ SurfaceResult power_crust(const PointCloud& cloud, std::span<const double> spaci
   PolarBalls polar = polar_balls(used.points, used_spacing_m, least_radius_sigmas * result.sigma_m);
   const PowerDiagram diagram = power_diagram(polar.balls);
   std::vector<PolarTie> ties = std::move(polar.opposites);
-  for (const PowerFace& face : diagram.faces) {
-    const double certainty = same_side_certainty(polar.balls[face.first], polar.balls[face.second]);
-    if (certainty > 0) ties.push_back({face.first, face.second, certainty, true});
-  }
+  for (const PowerFace& face : diagram.faces)
+    ties.push_back({face.first, face.second,
+                    same_side_certainty(polar.balls[face.first], polar.balls[face.second]), true});
   const Mesh crust =
       crust_of(diagram, polar, label_inside(polar.balls.size(), ties, polar.is_outer));
   if (crust.empty())

@@ -37,6 +37,14 @@ TEST(LabelInside, LeavesTheContradictedToTheEnd) {
   EXPECT_EQ(label_inside(4, ties, std::vector<char>{1, 0, 0, 0}), (std::vector<char>{0, 0, 1, 1}));
 }
 
+// Outer 0 and its neighbour 1; behind scattered points 2, which is sure of 3; a void 4 inside them.
+TEST(LabelInside, CrossesLayersOfPointsThatNoBallsShare) {
+  const std::vector<PolarTie> ties{tie(0, 1, 0.9, true), tie(4, 3, 0, true), tie(2, 1, 0, true),
+                                   tie(2, 3, 0.8, true)};
+  EXPECT_EQ(label_inside(5, ties, std::vector<char>{1, 0, 0, 0, 0}),
+            (std::vector<char>{0, 0, 1, 1, 0}));
+}
+
 // Unit spheres whose centres are d apart meet where their radii enclose an angle of cosine
 // 1 - d^2 / 2.
 TEST(SameSideCertainty, IsTheCosineBetweenRadii) {

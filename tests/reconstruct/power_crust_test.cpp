@@ -132,6 +132,12 @@ TEST(PowerCrust, StaysWholeWhereAdvancingFrontsBreak) {
               0.02 * 4 * std::numbers::pi * std::numbers::pi * 0.35);
 }
 
+// The layer is some ten spacings thick: no point is touched by a ball inside and by one outside.
+TEST(PowerCrust, CrossesAThickLayerOfPoints) {
+  const SurfaceResult result = crust_of(scattered(torus_cloud(40000), 0.03), 0.018);
+  expect_closed(result.surface, 1);
+}
+
 // By a power of two nothing is rounded, so the micrometre comes out as the metre does.
 TEST(PowerCrust, HasNoUnit) {
   const PointCloud ring = torus_cloud(1500);
