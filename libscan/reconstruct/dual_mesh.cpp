@@ -16,8 +16,8 @@
 namespace scan {
 namespace {
 
-constexpr double least_curvature =
-    0.1;                             // of the largest eigenvalue: normals that differ by 0.3 rad
+// Of the largest eigenvalue: normals 0.3 rad off their mean.
+constexpr double least_curvature = 0.1;
 constexpr double sharp_reach = 1.5;  // in cells: edges lie outside of the rounded surface
 
 using Members = std::vector<std::vector<std::uint32_t>>;
