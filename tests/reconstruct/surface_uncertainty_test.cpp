@@ -134,12 +134,24 @@ TEST(SurfaceVariances, OfSharedNoiseAreThoseOfDrawnWindows) {
   EXPECT_NEAR(stated / squares, 1, 0.095);
   EXPECT_NEAR(surface_variances(square, cloud, {})[v].points_m2, own, 1e-12 * own);
   EXPECT_GT(stated, 5 * own);
-  // Two scans that saw the same, half of the weight each, share none with one another.
-  append(cloud, PointCloud(cloud));
-  CommonErrors both = of_two_scans(cloud);
-  both.in_windows = common.in_windows;
-  both.in_windows.insert(both.in_windows.end(), common.in_windows.begin(), common.in_windows.end());
-  EXPECT_NEAR(surface_variances(square, cloud, both)[v].points_m2, stated / 2, 1e-9 * stated);
+}
+
+// Two scans that saw the same, half of the weight each: what the points of one share is halved, and
+// nothing is shared between them, wherever their windows begin and end.
+TEST(SurfaceVariances, OfSharedNoiseAreEachScansOwn) {
+  const PointCloud once = square_points(40, 0.5), twice = seen_twice();
+  CommonErrors one, two = of_two_scans(twice);
+  for (const int rows : {5, 100}) {  // in the end all are within one window's rows
+    one.in_windows.clear();
+    for (int i = 0; i < 1600; ++i)
+      one.in_windows.emplace_back(double(i / 40) / rows, double(i % 40) / 5);
+    two.in_windows = one.in_windows;
+    two.in_windows.insert(two.in_windows.end(), one.in_windows.begin(), one.in_windows.end());
+    PointCloud cloud = once;
+    cloud.sigma_m.assign(cloud.size(), 1e-3);
+    const double of_one = at_middle(cloud, one).points_m2;
+    EXPECT_NEAR(at_middle(twice, two).points_m2, of_one / 2, 1e-9 * of_one) << rows;
+  }
 }
 
 // Noise along the ray moves a surface that it meets at 60 degrees by half.
