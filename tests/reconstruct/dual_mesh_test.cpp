@@ -185,6 +185,26 @@ TEST(DualMesh, KnowsWhatTheSurfaceKnew) {
   }
 }
 
+// In cells of twice the size pieces of a random field touch again and again: they are split, and
+// what is about a vertex is no quad. Its middle knows what a corner does.
+TEST(DualMesh, GivesMiddlesOfPolygonsWhatACornerKnows) {
+  SurfaceResult result = level_set(5, [](const Eigen::Vector3d& u) {
+    if (u.minCoeff() <= 0 || u.maxCoeff() >= 1) return 1.0;
+    return std::sin(1e4 * u.dot(Eigen::Vector3d(1.3, 2.7, 3.1)));
+  });
+  result.finest_cell_m *= 2;
+  for (const auto& v : result.surface.vertices) result.standard_error_m.push_back(1 + v[0]);
+  make_dual(result, somewhere);
+  ASSERT_EQ(result.standard_error_m.size(), result.surface.vertices.size());
+  std::vector<int> triangles(result.surface.vertices.size(), 0);
+  for (std::size_t t = 2 * result.surface.quads; t < result.surface.triangles.size(); ++t)
+    ++triangles[result.surface.triangles[t][2]];  // a middle comes last
+  EXPECT_GT(std::count_if(triangles.begin(), triangles.end(), [](int n) { return n > 4; }), 100);
+  for (std::size_t v = 0; v < result.standard_error_m.size(); ++v)
+    EXPECT_NEAR(result.standard_error_m[v], 1 + result.surface.vertices[v][0],
+                2 * result.finest_cell_m);
+}
+
 TEST(DualMesh, RefusesSurfacesThatWereNotCutOutOfCells) {
   SurfaceResult result = level_set(4, ball);
   result.finest_cell_m = 0;
