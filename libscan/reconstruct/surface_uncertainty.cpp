@@ -146,12 +146,13 @@ CommonErrors common_errors(std::span<const Scan> scans, StatedPoses poses) {
     shared |= placed && (scan.noise_window.rows > 1 || scan.noise_window.columns > 1);
     for (std::size_t k = 0; k < scan.cloud.size(); ++k) {
       common.scan.push_back(static_cast<std::uint32_t>(&scan - scans.data()));
-      if (placed)
-        common.in_windows.emplace_back(
-            double(scan.ray[k] / scan.grid.columns) / scan.noise_window.rows,
-            double(scan.ray[k] % scan.grid.columns) / scan.noise_window.columns);
-      else  // one apart: each has its own
-        common.in_windows.emplace_back(double(k), 0);
+      if (!placed) {  // one apart: each has its own
+        common.in_windows.emplace_back(static_cast<double>(k), 0);
+        continue;
+      }
+      const double row = scan.ray[k] / scan.grid.columns, column = scan.ray[k] % scan.grid.columns;
+      common.in_windows.emplace_back(row / scan.noise_window.rows,
+                                     column / scan.noise_window.columns);
     }
   }
   if (!shared) common.in_windows.clear();
