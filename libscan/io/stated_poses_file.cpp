@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/io/stated_poses_file.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
@@ -54,6 +55,10 @@ StatedPoses read_stated_poses(const std::filesystem::path& path) {
     if (!alignment.contains("covariances_between")) return stated;  // of an earlier version
     for (const auto& couple : alignment.at("covariances_between"))
       stated.between.push_back(common_covariance(couple, stated.scans.size(), path));
+    std::sort(stated.between.begin(), stated.between.end(),
+              [](const CommonCovariance& a, const CommonCovariance& b) {
+                return std::pair(a.first, a.second) < std::pair(b.first, b.second);
+              });
   } catch (const json::exception& error) {
     throw Error(Trouble::input, path.string() + ": is not an alignment (" + error.what() + ")");
   }

@@ -110,8 +110,10 @@ class Patch {
     return (1 - windows_apart(i, j).array()).max(0).prod();
   }
 
+  // Rounding takes what a covariance leaves out below zero.
   double own(const Lever& lever) const {
-    return lever.second.dot(common_.poses.scans[lever.first]->covariance * lever.second);
+    const Matrix6& covariance = common_.poses.scans[lever.first]->covariance;
+    return std::max(0.0, lever.second.dot(covariance * lever.second));
   }
 
   // Of scans that no couple ties it is not known: at most the root of both variances' product.
@@ -144,9 +146,11 @@ CommonErrors common_errors(std::span<const Scan> scans, StatedPoses poses) {
     shared |= placed && (scan.noise_window.rows > 1 || scan.noise_window.columns > 1);
     for (std::size_t k = 0; k < scan.cloud.size(); ++k) {
       common.scan.push_back(static_cast<std::uint32_t>(&scan - scans.data()));
-      // One apart where the rays are not known: each has its own.
-      const double row = placed ? scan.ray[k] / scan.grid.columns : double(k),
-                   column = placed ? scan.ray[k] % scan.grid.columns : 0;
+      if (!placed) {  // one apart: each has its own
+        common.in_windows.emplace_back(static_cast<double>(k), 0);
+        continue;
+      }
+      const double row = scan.ray[k] / scan.grid.columns, column = scan.ray[k] % scan.grid.columns;
       common.in_windows.emplace_back(row / scan.noise_window.rows,
                                      column / scan.noise_window.columns);
     }

@@ -31,10 +31,13 @@ class EquivalentKernel {
  public:
   EquivalentKernel() {
     constexpr double step = 0.01;
+    constexpr int steps = static_cast<int>(6 * half_wave / step);
     for (std::size_t i = 0; i < table_.size(); ++i) {
       const double r = static_cast<double>(i) * reach_in_lengths / last;
-      for (double x = step / 2; x < 6 * half_wave; x += step)
+      for (int k = 0; k < steps; ++k) {
+        const double x = (k + 0.5) * step;
         table_[i] += response(x) * x * std::cyl_bessel_j(0, x * r) * step / (2 * std::numbers::pi);
+      }
     }
   }
   double operator()(double lengths) const {

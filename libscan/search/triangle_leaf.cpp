@@ -22,7 +22,7 @@ constexpr double right_angle = 0x1p-22;  // rounding leaves less than 2^-23 of i
 }  // namespace
 
 void TriangleLeaf::set(int lane, const std::array<Eigen::Vector3d, 3>& corners) {
-  const auto [a, b, c] = corners;
+  const Eigen::Vector3d &a = corners[0], &b = corners[1], &c = corners[2];
   const Eigen::Vector3f of_plane = direction_of((b - a).cross(c - a));
   const auto along = [&](const Eigen::Vector3f& n) {
     const Eigen::Vector3d direction = n.cast<double>();
