@@ -3,6 +3,7 @@
 // scan reconstruct: oriented points to a surface.
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
@@ -53,6 +54,9 @@ void tell_of_quads(const Mesh& surface, Console& console) {
 int reconstruct_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
   check_output(output);
+  if (arguments.quads && std::filesystem::path(output).extension() == ".stl")
+    throw Error(Trouble::usage, "--quads: " + output + " can hold triangles only",
+                "PLY, OBJ and OFF hold quads");
   const auto scans = read_scans_with_normals(inputs, console);
   std::vector<Pose> poses(scans.size(), Pose::Identity());
   StatedPoses stated;
