@@ -3,6 +3,7 @@
 // scan reconstruct: oriented points to a surface.
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
@@ -114,6 +115,9 @@ void tell_of_work(const SurfaceResult& result, Console& console) {
 int reconstruct_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
   check_output(output);
+  if (arguments.quads && std::filesystem::path(output).extension() == ".stl")
+    throw Error(Trouble::usage, "--quads: " + output + " can hold triangles only",
+                "PLY, OBJ and OFF hold quads");
   const auto scans = read_scans_with_normals(inputs, console);
   const std::vector<Pose> poses = poses_of(arguments.poses, scans.size());
   StatedPoses stated;

@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 namespace scan {
 namespace {
@@ -16,8 +15,6 @@ Eigen::Vector3f direction_of(const Eigen::Vector3d& vector) {
   if (!(length > shortest)) return Eigen::Vector3f::Zero();
   return (vector / length).cast<float>();
 }
-
-constexpr double right_angle = 0x1p-22;  // rounding leaves less than 2^-23 of it
 
 }  // namespace
 
@@ -35,9 +32,10 @@ void TriangleLeaf::set(int lane, const std::array<Eigen::Vector3d, 3>& corners) 
   for (int edge = 0; edge < 3; ++edge) {
     const auto k = static_cast<std::size_t>(edge);
     const Eigen::Vector3d way = corners[(k + 1) % 3] - corners[k];
-    Eigen::Vector3f out = direction_of(way.cross(of_plane.cast<double>()));
-    // A needle's normal is what rounding left of it, perhaps along the needle.
-    if (std::abs(out.cast<double>().dot(of_plane.cast<double>())) > right_angle) out.setZero();
+    // A needle's normal is what rounding left of it. It can lie along the needle only where one of
+    // its coordinates is 0 (three roundings would all have to be at their most), and then what
+    // rounding leaves of this product is across it.
+    const Eigen::Vector3f out = direction_of(way.cross(of_plane.cast<double>()));
     reach[edge][lane] = static_cast<float>(along(out).second);
     for (int axis = 0; axis < 3; ++axis) outward[edge][axis][lane] = out[axis];
   }
