@@ -16,6 +16,8 @@ namespace {
 // Points off the overlap take several times as long to find a partner for as others, and follow one
 // another: small chunks share them out.
 constexpr std::size_t chunk = 128;
+// Losses are a few nanoseconds each: below this many, handing them over costs more than it saves.
+constexpr std::size_t light_chunk = 4096;
 // Beyond three scales the loss weighs a residual with 1 % and its slope falls.
 constexpr double most_scales = 3;
 // Thickness of the planes of generalised ICP in units of their extent, where the scan does not tell
@@ -222,7 +224,7 @@ double PairFinder::median_residual_m(std::span<const Match> matches) const {
 
 double PairFinder::objective_m2(std::span<const Match> matches, const Weighing& weighing) const {
   const double sum_m2 =
-      ordered_sum(matches.size(), chunk, 0.0, [&](std::size_t begin, std::size_t end) {
+      ordered_sum(matches.size(), light_chunk, 0.0, [&](std::size_t begin, std::size_t end) {
         double part_m2 = 0;
         for (std::size_t k = begin; k < end; ++k)
           part_m2 += weighing.loss.rho_m2(std::min(matches[k].residual_m, weighing.limit_m));
