@@ -255,7 +255,7 @@ void IcpIteration::report(const State& state, IcpResult& result) const {
 void IcpIteration::run(const Pose& guess, IcpResult& result) {
   bool moving = descend(guess, result);
   State state = examine(weighing_);
-  if (!moving && !near_ && seek_smoother(guess, result)) state = examine(weighing_);
+  if (!moving && seek_better(guess, result)) state = examine(weighing_);
   // What was moved along them meant nothing: once more from the guess without.
   if (state.couples.size() >= least_pairs && !moving && withhold_more(state)) {
     result.history.clear();

@@ -55,8 +55,9 @@ class IcpIteration {
   // icp_approach.cpp
   bool is_near() const;
   double roughness() const;
+  double contradicted() const;
   void approach(IcpResult& result);
-  bool seek_smoother(const Pose& guess, IcpResult& result);
+  bool seek_better(const Pose& guess, IcpResult& result);
   bool withhold_more(const State& state);
   Stop judge(const State& state) const;
   void report(const State& state, IcpResult& result) const;
