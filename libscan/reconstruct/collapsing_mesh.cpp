@@ -13,6 +13,7 @@ namespace {
 
 constexpr double least_cosine = 0.5;  // of 60 degrees
 constexpr double least_roundness = 0.01;
+constexpr double flat = 1e-6;
 
 struct Shape {
   Eigen::Vector3d twice_area;
@@ -23,6 +24,7 @@ struct Shape {
     const double longest2 =
         std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     roundness = longest2 > 0 ? twice_area.norm() / longest2 : 0;
+    if (roundness < flat) roundness = 0;  // rounding
   }
 };
 
@@ -69,6 +71,7 @@ bool CollapsingMesh::keeps_shape(std::uint32_t moved, std::uint32_t other,
     const auto corner = [&](int k) { return c[k] == moved ? place : mesh_.vertices[c[k]]; };
     const Shape before(at(c[0]), at(c[1]), at(c[2])), after(corner(0), corner(1), corner(2));
     if (after.roundness < std::min(least_roundness, before.roundness)) return false;
+    if (after.roundness < least_roundness) continue;
     const Eigen::Vector3d& side =
         before.roundness > least_roundness ? before.twice_area : star_side;
     if (side.dot(after.twice_area) < least_cosine * side.norm() * after.twice_area.norm())
