@@ -3,7 +3,9 @@
 #include "tests/benchmarks/reconstruct_bodies.h"
 
 #include <map>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "libscan/io/scan_file.h"
 
@@ -59,10 +61,45 @@ void close_holes(Mesh& mesh) {
   }
 }
 
+void smooth_once(Mesh& mesh, const std::vector<std::set<std::uint32_t>>& around) {
+  std::vector<Eigen::Vector3d> moved = mesh.vertices;
+  for (std::size_t v = 0; v < around.size(); ++v) {
+    if (around[v].empty()) continue;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const std::uint32_t w : around[v]) sum += mesh.vertices[w];
+    moved[v] = (moved[v] + sum / static_cast<double>(around[v].size())) / 2;
+  }
+  mesh.vertices = std::move(moved);
+}
+
+// Of each vertex; none of those on a rim.
+std::vector<std::set<std::uint32_t>> neighbours_of_inner(const Mesh& mesh) {
+  std::vector<std::set<std::uint32_t>> around(mesh.vertices.size());
+  for (const Triangle& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      around[t[k]].insert(t[(k + 1) % 3]);
+      around[t[k]].insert(t[(k + 2) % 3]);
+    }
+  for (const auto& [from, to] : rims_of(mesh)) around[from] = around[to] = {};
+  return around;
+}
+
+Mesh open_bunny(const fs::path& data) {
+  return read_mesh(data / "stanford-bunny" / "reconstruction" / "bun_zipper.ply");
+}
+
 }  // namespace
 
 Mesh closed_bunny(const fs::path& data) {
-  Mesh mesh = read_mesh(data / "stanford-bunny" / "reconstruction" / "bun_zipper.ply");
+  Mesh mesh = open_bunny(data);
+  close_holes(mesh);
+  return mesh;
+}
+
+Mesh smooth_bunny(const fs::path& data) {
+  Mesh mesh = open_bunny(data);
+  const auto around = neighbours_of_inner(mesh);
+  for (int pass = 0; pass < 2; ++pass) smooth_once(mesh, around);
   close_holes(mesh);
   return mesh;
 }
@@ -73,6 +110,7 @@ TrueSurface reconstruct_body(const std::string& name, const fs::path& data) {
   if (name == "csg") return {{{Pose::Identity(), csg_part()}}, {}};
   if (name == "plate") return {{{Pose::Identity(), BoxShape{{2, 2, 0.02}}}}, {}};
   if (name == "bunny") return {{}, {closed_bunny(data)}};
+  if (name == "smooth-bunny") return {{}, {smooth_bunny(data)}};
   return {{}, {read_mesh(data / "reconbench" / "mesh" / (name + ".off"))}};
 }
 

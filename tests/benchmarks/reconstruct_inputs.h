@@ -21,10 +21,10 @@ struct ReconstructInput {
   double diagonal_m = 0;  // of the true surface's box
 };
 
-// sphere, torus, csg, bunny, plate: exact samples and true normals. NAME-0.1, -0.5, -1: isotropic
-// Gaussian noise in per cent of the diagonal; normals are then plane fits over 20, 40 or 60
-// neighbours, turned as the true ones. bunny-outliers-5 and -20: uniform in 1.2 times the box with
-// random normals, in per cent of the samples, at 0.1 % noise. bunny-flipped-10, -30: that many
+// sphere, torus, csg, bunny, smooth-bunny, plate: exact samples and true normals. NAME-0.1, -0.5,
+// -1: isotropic Gaussian noise in per cent of the diagonal; normals are then plane fits over 20, 40
+// or 60 neighbours, turned as the true ones. bunny-outliers-5 and -20: uniform in 1.2 times the box
+// with random normals, in per cent of the samples, at 0.1 % noise. bunny-flipped-10, -30: that many
 // normals turned round, -patch: all within 20 % of the diagonal of one end. NAME-density: sampled
 // up to 200 times as densely on one end; NAME-holes: six balls of 7 % of the diagonal are missing;
 // both at 0.05 % noise. bunny-5000: so many exact samples. sphere-cap: z > 0.3 of the sphere, 0.05

@@ -59,6 +59,34 @@ TEST(ReconstructInputs, NoiseIsAsStrongAsItsName) {
   EXPECT_LT(wrong, input.cloud.size() / 100);
 }
 
+// Each inner vertex goes half way to the mean of its neighbours, twice: what differs from this mean
+// is halved at least where it was roughest, and rims and facets stay.
+TEST(ReconstructInputs, SmoothBunnyIsSmoother) {
+  SKIP_WITHOUT_DATA();
+  const Mesh rough = closed_bunny(data), smooth = smooth_bunny(data);
+  EXPECT_EQ(rough.triangles, smooth.triangles);
+  const auto roughness = [](const Mesh& mesh) {
+    std::vector<Eigen::Vector3d> sums(mesh.vertices.size(), Eigen::Vector3d::Zero());
+    std::vector<double> counts(mesh.vertices.size(), 0);
+    for (const Triangle& t : mesh.triangles)
+      for (int k = 0; k < 3; ++k) {
+        sums[t[k]] += mesh.vertices[t[(k + 1) % 3]] + mesh.vertices[t[(k + 2) % 3]];
+        counts[t[k]] += 2;
+      }
+    double sum = 0;
+    for (std::size_t v = 0; v < sums.size(); ++v)
+      if (counts[v] > 0) sum += (sums[v] / counts[v] - mesh.vertices[v]).norm();
+    return sum;
+  };
+  EXPECT_LT(roughness(smooth), 0.75 * roughness(rough));
+  std::size_t still = 0;
+  for (std::size_t v = 0; v < rough.vertices.size(); ++v)
+    still += rough.vertices[v] == smooth.vertices[v];
+  // The rims of the scan's five holes, and what no facet touches; not the inner vertices.
+  EXPECT_GT(still, 100u);
+  EXPECT_LT(still, rough.vertices.size() / 20);
+}
+
 TEST(ReconstructInputs, DensityFallsTwoHundredfold) {
   const ReconstructInput input = make_reconstruct_input("torus-density", data, 10000);
   double sum = 0, sum_x = 0;
