@@ -100,25 +100,6 @@ std::vector<double> LocalSmoothing::mean_around(const std::vector<double>& value
   return result;
 }
 
-std::vector<MeanAround> LocalSmoothing::mean_with_error(const std::vector<double>& values) const {
-  std::vector<double> sums(length_.size(), 0.0), squares = sums, counts = sums;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    sums[region_of_[i]] += values[i];
-    squares[region_of_[i]] += values[i] * values[i];
-    counts[region_of_[i]] += 1;
-  }
-  sums = around(sums);
-  squares = around(squares);
-  counts = around(counts);
-  std::vector<MeanAround> result;
-  for (const std::uint32_t r : region_of_) {
-    const double mean = sums[r] / counts[r];
-    const double variance = std::max(0.0, squares[r] / counts[r] - mean * mean);
-    result.push_back({mean, std::sqrt(variance / counts[r])});
-  }
-  return result;
-}
-
 std::vector<double> LocalSmoothing::lengths() const {
   const std::size_t regions = length_.size();
   std::vector<double> logs(regions), counts(regions, 0.0);

@@ -29,10 +29,6 @@ double posterior_variance(double area, double length);
 // tail and leave half of it, so the noise a fit takes up counts twice. That inflation keeps chance,
 // and scatter in position, which bends the fit more than linear theory says, from asking for
 // lengths that are too short.
-struct MeanAround {
-  double mean = 0, standard_error = 0;
-};
-
 class LocalSmoothing {
  public:
   explicit LocalSmoothing(const Samples& samples);
@@ -43,9 +39,6 @@ class LocalSmoothing {
                const std::vector<double>& trust);
   // Per sample, the mean of such values' sizes around it.
   std::vector<double> mean_around(const std::vector<double>& values) const;
-  // Per sample, the mean of such values around it and what it may be off by chance, as if they had
-  // been drawn from one distribution, each by itself.
-  std::vector<MeanAround> mean_with_error(const std::vector<double>& values) const;
   // What was kept, per sample; the logarithm goes smoothly from region to region.
   std::vector<double> lengths() const;
 

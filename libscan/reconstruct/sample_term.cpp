@@ -151,25 +151,6 @@ void SampleTerm<Real>::write_residuals(const BlockLevel& level, const std::vecto
 }
 
 template <class Real>
-void SampleTerm<Real>::write_normals(const BlockLevel& level, const std::vector<Real>& u,
-                                     std::vector<Eigen::Vector3d>& normals) const {
-  parallel_for(
-      bucket_block_.size(),
-      [&](std::size_t bucket) {
-        Real cube[cube_room];
-        cube[cube_size] = 0;
-        gather_cell_functions(level, u, bucket_block_[bucket], cube);
-        for (const Placed& sample : in_bucket(bucket)) {
-          const Eigen::Vector3d slope = evaluate(cube + sample.corner, weights_at(sample.in_cell))
-                                            .slope.template cast<double>();
-          normals[sample.sample] =
-              slope.squaredNorm() > 0 ? slope.normalized() : sample.normal.template cast<double>();
-        }
-      },
-      buckets_per_task);
-}
-
-template <class Real>
 void SampleTerm<Real>::aim_at_scattered_mean(const BlockLevel& level, const std::vector<Real>& u,
                                              std::span<const double> sigma) {
   parallel_for(

@@ -40,9 +40,6 @@ class SampleTerm {
   // Of each sample on this level: f / |grad f|.
   void write_residuals(const BlockLevel& level, const std::vector<Real>& u,
                        std::vector<double>& residuals) const;
-  // Likewise grad f / |grad f|; the sample's own normal where f is flat.
-  void write_normals(const BlockLevel& level, const std::vector<Real>& u,
-                     std::vector<Eigen::Vector3d>& normals) const;
   // Aims at f = sigma^2 / 2 times the Laplacian of u at each sample.
   void aim_at_scattered_mean(const BlockLevel& level, const std::vector<Real>& u,
                              std::span<const double> sigma);

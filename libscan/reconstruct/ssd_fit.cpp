@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "libscan/core/median.h"
-#include "libscan/reconstruct/bilateral_samples.h"
+#include "libscan/reconstruct/local_smoothing.h"
 
 namespace scan {
 namespace {
@@ -58,15 +57,13 @@ template <class Real>
 class Fit {
  public:
   Fit(const OctreeGrid& grid, const Samples& samples, const SsdFitOptions& options)
-      : grid_(grid),
-        samples_(samples),
+      : samples_(samples),
         options_(options),
         levels_(grid.levels.size()),
         trust_(samples.points.size(), 1.0),
         smoothing_(samples),
-        system_(std::in_place, grid, samples,
-                smoothing_weights(samples, even(length_at(0)), trust_)),
-        solver_(std::in_place, *system_, grid) {
+        system_(grid, samples, smoothing_weights(samples, even(length_at(0)), trust_)),
+        solver_(system_, grid) {
     result_.solution.coefficients = active_arrays(grid);
   }
 
@@ -75,10 +72,10 @@ class Fit {
     result_.length.assign(samples_.points.size(), options_.length);
     for (std::size_t l = 0; l + 1 < levels_; ++l) {
       report(progress, l);
-      system_->use_levels(l);
+      system_.use_levels(l);
       const double trial = std::max(length_at(l), options_.length);
       solve(even(trial), trial_residual);
-      distrust(system_->residuals(coefficients()), trial);
+      distrust(system_.residuals(coefficients()), trial);
     }
   }
 
@@ -88,10 +85,10 @@ class Fit {
       report(progress, l);
       const double trial = std::max(length_at(l), options_.length);
       const bool coarse = l + 1 < levels_;
-      if (l < levels_) system_->use_levels(l);
+      if (l < levels_) system_.use_levels(l);
       const LevelArrays before = coarse ? LevelArrays{} : coefficients();
       solve(even(trial), trial_residual);
-      const std::vector<double> residuals = system_->residuals(coefficients());
+      const std::vector<double> residuals = system_.residuals(coefficients());
       distrust(residuals, trial);
       const double lowered = smoothing_.judge(trial, residuals, trust_);
       if (!coarse && lowered < least_share_lowered) {
@@ -104,34 +101,15 @@ class Fit {
 
   // On all levels with the lengths found.
   void finish() {
-    system_->use_levels(levels_ - 1);
+    system_.use_levels(levels_ - 1);
     solve(result_.length, options_.relative_residual);
-    for (int round = 0; round < rounds_of_aim && aims(); ++round) {
-      system_->aim_at_scattered_mean(coefficients());
+    const int rounds = samples_.scattered_all_around && !is_exact(samples_) ? rounds_of_aim : 0;
+    for (int round = 0; round < rounds; ++round) {
+      system_.aim_at_scattered_mean(coefficients());
       improve(options_.relative_residual);
     }
-  }
-
-  // Once more, through the samples that averages up to creases have moved.
-  void keep_creases() {
-    std::optional<BilateralSamples> moved =
-        bilateral_samples(samples_,
-                          {system_->residuals(coefficients()), system_->normals(coefficients()),
-                           result_.length, trust_},
-                          smoothing_, options_.length);
-    if (!moved) return;
-    solver_.reset();
-    moved_ = std::move(moved->samples);
-    system_.emplace(grid_, moved_, smoothing_weights(moved_, moved->length, trust_));
-    solver_.emplace(*system_, grid_);
-    solver_->refresh();
-    if (aims()) system_->aim_at_scattered_mean(coefficients());
-    improve(options_.relative_residual);
-  }
-
-  void sum_up() {
     SsdSolution& solution = result_.solution;
-    solution.relative_residual = solver_->relative_residual(coefficients());
+    solution.relative_residual = solver_.relative_residual(coefficients());
     // The residual that conjugate gradients carries along drifts from the true one by rounding.
     if (solution.relative_residual <= 1.01 * options_.relative_residual)
       solution.stop = SolveStop::converged;
@@ -150,8 +128,6 @@ class Fit {
       progress("solve", static_cast<double>(l) / static_cast<double>(std::max(l, levels_) + 1));
   }
 
-  bool aims() const { return samples_.scattered_all_around && !is_exact(samples_); }
-
   LevelArrays& coefficients() { return result_.solution.coefficients; }
 
   std::vector<double> even(double length) const {
@@ -168,25 +144,23 @@ class Fit {
   }
 
   void solve(const std::vector<double>& length, double relative_residual) {
-    system_->set_weights(smoothing_weights(samples_, length, trust_));
-    solver_->refresh();
+    system_.set_weights(smoothing_weights(samples_, length, trust_));
+    solver_.refresh();
     improve(relative_residual);
   }
 
   void improve(double relative_residual) {
-    result_.solution.iterations += solver_->improve(
+    result_.solution.iterations += solver_.improve(
         relative_residual, options_.max_iterations - result_.solution.iterations, coefficients());
   }
 
-  const OctreeGrid& grid_;
   const Samples& samples_;
   SsdFitOptions options_;
   std::size_t levels_;
-  Samples moved_;
   std::vector<double> trust_;
   LocalSmoothing smoothing_;
-  std::optional<SsdSystem<Real>> system_;
-  std::optional<SsdSolver<Real>> solver_;
+  SsdSystem<Real> system_;
+  SsdSolver<Real> solver_;
   SsdFit result_;
 };
 
@@ -200,8 +174,6 @@ SsdFit fitted(const OctreeGrid& grid, const Samples& samples, const SsdFitOption
   else
     fit.search(progress);
   fit.finish();
-  if (!is_exact(samples)) fit.keep_creases();
-  fit.sum_up();
   if (progress) progress("solve", 1);
   return fit.take();
 }

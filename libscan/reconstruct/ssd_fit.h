@@ -10,7 +10,7 @@ namespace scan {
 
 struct SsdFit {
   SsdSolution solution;
-  std::vector<double> length;  // smoothing length at each sample of the search, unit cube
+  std::vector<double> length;  // smoothing length at each sample, unit cube
 };
 
 struct SsdFitOptions {
@@ -39,8 +39,7 @@ SsdFitOptions chosen_for(const Samples& samples, SsdFitOptions options);
 
 // From the coarsest level to the finest: each is solved with a smoothing length in step with its
 // cells, and keeps it in the regions where that lowers the risk; past the finest level the length
-// alone goes on. Then all is solved once more for the lengths found, and again where that rounds
-// off creases (bilateral_samples.h).
+// alone goes on. Then all is solved once more for the lengths found.
 SsdFit fit_surface(const OctreeGrid& grid, const Samples& samples, const SsdFitOptions& options,
                    const Progress& progress = {});
 

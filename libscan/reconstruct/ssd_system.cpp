@@ -175,15 +175,6 @@ std::vector<double> SsdSystem<Real>::residuals(const LevelArrays& x) {
 }
 
 template <class Real>
-std::vector<Eigen::Vector3d> SsdSystem<Real>::normals(const LevelArrays& x) {
-  accumulate_coarse_to_fine(x);
-  std::vector<Eigen::Vector3d> found(depths_.size());
-  for (std::size_t l = 0; l <= finest_; ++l)
-    terms_[l].write_normals(grid_.levels[l], sums_[l], found);
-  return found;
-}
-
-template <class Real>
 void SsdSystem<Real>::aim_at_scattered_mean(const LevelArrays& x) {
   accumulate_coarse_to_fine(x);
   for (std::size_t l = 0; l <= finest_; ++l)

@@ -44,8 +44,6 @@ class SsdSystem {
   Eigen::MatrixXd coarsest_matrix(const CellMatrices& samples) const;
   // Per sample: f / |grad f|, to first order the distance to the zero set.
   std::vector<double> residuals(const LevelArrays& x);
-  // Per sample: grad f / |grad f|.
-  std::vector<Eigen::Vector3d> normals(const LevelArrays& x);
   // From now on aims at f = sigma^2 / 2 times the Laplacian of x at each sample, not at f = 0: that
   // is what samples of the surface, scattered by sigma in all directions, find there on average.
   void aim_at_scattered_mean(const LevelArrays& x);

@@ -139,22 +139,6 @@ TEST(LocalSmoothing, AveragesSizesAround) {
   for (const double mean : smoothing.mean_around(values)) EXPECT_NEAR(mean, 3, 1e-12);
 }
 
-// Weights w of 1 and less make the variance of a mean the share sum w^2 / sum w of its square error
-// at most: on a plane, half weight an axis, 2.25 / 4. Some 7 of 50 regions' means are independent,
-// so that the mean of the squares is 0.56 +- 0.56 sqrt(2 / 7) = 0.3; three of these above, and not
-// 0.
-TEST(LocalSmoothing, KnowsHowSureItsMeansAre) {
-  const Samples samples = unit_square(50, 1e-3);
-  const LocalSmoothing smoothing(samples);
-  std::vector<double> values;
-  for (std::size_t i = 0; i < 2500; ++i) values.push_back(1 + 3 * RandomStream(1, 0, i).normal());
-  double sum = 0;
-  for (const MeanAround& around : smoothing.mean_with_error(values))
-    sum += std::pow((around.mean - 1) / around.standard_error, 2);
-  EXPECT_GT(sum / 2500, 0.05);
-  EXPECT_LT(sum / 2500, 1.46);
-}
-
 TEST(LocalSmoothing, TellsHowManySamplesFaredBetter) {
   const Samples samples = unit_square(50, 1e-3);
   LocalSmoothing smoothing(samples);
