@@ -50,6 +50,9 @@ Scan decode(const Arguments& arguments, const RawFrames& frames) {
 int acquire_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
   check_output(output);
+  if (arguments.calibration.empty())
+    throw Error(Trouble::usage, "--calibration: is missing, what the device's numbers mean",
+                "scan calibrate makes one");
   const Stopwatch watch;
   const RawFrames frames =
       read_raw_frames(arguments.device, {inputs.begin(), inputs.end()}, arguments.calibration);

@@ -156,6 +156,8 @@ ordered_json calibrate_stereo_files(const Files& files, const std::string& outpu
   const auto left_seen = find_boards(left, board), right_seen = find_boards(right, board);
   std::vector<BoardPair> pairs;
   for (std::size_t i = 0; i < left.size(); ++i) pairs.push_back({left_seen[i], right_seen[i]});
+  console.log(std::to_string(left.size()) + " pairs, from " + left.front() + " with " +
+              right.front() + " to " + left.back() + " with " + right.back());
   const RigCalibration found =
       calibrate_stereo(board, pairs, {.distortion_terms = static_cast<int>(arguments.distortion)});
   ordered_json pictures = pictures_json(left, found.pairs, console);
@@ -187,6 +189,8 @@ ordered_json calibrate_light_plane_files(const Files& files, const std::string& 
   if (arguments.camera.empty())
     throw Error(Trouble::usage, "--camera: is missing, a camera.json of scan calibrate camera");
   const auto [boards, stripes] = halves(files, "as many of stripes as of boards are needed");
+  console.log(std::to_string(boards.size()) + " boards, from " + boards.front() + " with stripe " +
+              stripes.front() + " to " + boards.back() + " with " + stripes.back());
   const CameraSetup camera = read_camera_calibration(arguments.camera);
   if (!camera.sensor)
     console.warn(arguments.camera +
@@ -220,6 +224,8 @@ ordered_json calibrate_light_plane_files(const Files& files, const std::string& 
 int calibrate_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
   check_output(output);
+  if (!output.ends_with(".json"))
+    throw Error(Trouble::usage, output + ": the calibration is written last, as a .json file");
   const Stopwatch watch;
   ordered_json result = arguments.what == "camera"
                             ? calibrate_camera_files(inputs, output, arguments, console)

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // scan info: what a file holds.
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "libscan/core/error.h"
 #include "libscan/io/scan_file.h"
 #include "tools/commands.h"
 
@@ -77,6 +79,9 @@ Action info_command(CommandLine& line) {
   auto path = std::make_shared<std::string>();
   line.input("FILE", *path, "a mesh, a cloud or a scan");
   return [path](Console& console) {
+    if (std::filesystem::is_directory(*path))
+      throw Error(Trouble::input, *path + ": is a folder, must be a file",
+                  "scan verify measures a run folder");
     ordered_json result =
         holds_triangles(*path) ? describe_mesh(*path, console) : describe_cloud(*path, console);
     result["file"] = *path;

@@ -8,6 +8,7 @@
 #include "libscan/io/json_reader.h"
 #include "tools/field_reader.h"
 #include "tools/field_writer.h"
+#include "tools/figure_name.h"
 #include "tools/recipe_fields.h"
 #include "tools/study.h"
 
@@ -61,7 +62,7 @@ ordered_json to_json(const synth::EffectChoice& choice) {
 
 // "at_most_mm", "at_least", "equals": the relation, then the unit that the figure has.
 Limit read_limit(JsonReader reader) {
-  Limit limit{.name = reader.text("name"), .relation = "", .value = 0, .reason = ""};
+  Limit limit{.name = read_figure(reader, "name"), .relation = "", .value = 0, .reason = ""};
   for (const auto& [word, relation] :
        {std::pair("at_most", "<="), std::pair("at_least", ">="), std::pair("equals", "==")}) {
     double value = 0;

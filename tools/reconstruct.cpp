@@ -3,6 +3,7 @@
 // scan reconstruct: oriented points to a surface.
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
@@ -50,20 +51,18 @@ void tell_of_quads(const Mesh& surface, Console& console) {
   console.say(text);
 }
 
-int reconstruct_files(const Arguments& arguments, Console& console) {
-  const auto [inputs, output] = split_output(arguments.paths);
-  check_output(output);
-  const auto scans = read_scans_with_normals(inputs, console);
-  std::vector<Pose> poses(scans.size(), Pose::Identity());
-  StatedPoses stated;
-  if (!arguments.poses.empty()) {
-    const auto named = read_poses(arguments.poses);
-    if (named.size() != scans.size())
-      throw Error(Trouble::input, arguments.poses + ": has " + std::to_string(named.size()) +
-                                      " poses for " + std::to_string(scans.size()) + " scans");
-    for (std::size_t i = 0; i < scans.size(); ++i) poses[i] = named[i].pose;
-    if (arguments.poses.ends_with(".json")) stated = read_stated_poses(arguments.poses);
-  }
+std::vector<Pose> poses_of(const std::string& path, std::size_t scans) {
+  std::vector<Pose> poses(scans, Pose::Identity());
+  if (path.empty()) return poses;
+  const auto named = read_poses(path);
+  if (named.size() != scans)
+    throw Error(Trouble::input, path + ": has " + std::to_string(named.size()) + " poses for " +
+                                    std::to_string(scans) + " scans");
+  for (std::size_t i = 0; i < scans; ++i) poses[i] = named[i].pose;
+  return poses;
+}
+
+ReconstructSettings settings_of(const Arguments& arguments) {
   ReconstructSettings settings;
   const auto& names = reconstruct_method_names();
   settings.method = static_cast<ReconstructMethod>(
@@ -75,13 +74,11 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   settings.trim_m = arguments.trim_m;
   settings.decimate_m = arguments.decimate_m;
   settings.thin_m = arguments.thin_m;
+  return settings;
+}
 
-  const SurfaceResult result = make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
-                                            common_errors(scans, stated), settings, console);
-  write_supported_mesh(output, supported(result));
-  const auto json = surface_json(result);
-  if (settings.method == ReconstructMethod::automatic)
-    console.say("method " + result.method + ": " + result.method_reason);
+void tell_of_surface(const std::string& output, const SurfaceResult& result,
+                     const nlohmann::ordered_json& json, Console& console) {
   console.say(output + ": " + std::to_string(result.surface.vertices.size()) + " vertices, " +
               std::to_string(result.surface.triangles.size()) + " triangles, " +
               std::to_string(json.at("components").get<int>()) + " components, " +
@@ -94,6 +91,10 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   if (result.sharp.edge_vertices > 0)
     console.say(std::to_string(result.sharp.edge_vertices) + " vertices put on sharp edges, " +
                 std::to_string(result.sharp.corners) + " of them corners");
+}
+
+// What the method did and found.
+void tell_of_work(const SurfaceResult& result, Console& console) {
   if (result.decimation.is_proven)
     console.say("decimated from " + std::to_string(result.decimation.triangles_before) +
                 " triangles, both surfaces within " + readable_length(result.decimation.bound_m) +
@@ -109,6 +110,27 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
                 " an axis; where two meet their surfaces are " +
                 readable_length(result.parts.seam_rms_m) + " rms apart, at most " +
                 readable_length(result.parts.seam_largest_m));
+}
+
+int reconstruct_files(const Arguments& arguments, Console& console) {
+  const auto [inputs, output] = split_output(arguments.paths);
+  check_output(output);
+  if (arguments.quads && std::filesystem::path(output).extension() == ".stl")
+    throw Error(Trouble::usage, "--quads: " + output + " can hold triangles only",
+                "PLY, OBJ and OFF hold quads");
+  const auto scans = read_scans_with_normals(inputs, console);
+  const std::vector<Pose> poses = poses_of(arguments.poses, scans.size());
+  StatedPoses stated;
+  if (arguments.poses.ends_with(".json")) stated = read_stated_poses(arguments.poses);
+  const ReconstructSettings settings = settings_of(arguments);
+  const SurfaceResult result = make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
+                                            common_errors(scans, stated), settings, console);
+  write_supported_mesh(output, supported(result));
+  const auto json = surface_json(result);
+  if (settings.method == ReconstructMethod::automatic)
+    console.say("method " + result.method + ": " + result.method_reason);
+  tell_of_surface(output, result, json, console);
+  tell_of_work(result, console);
   console.finish("reconstruct", "ok", json);
   return 0;
 }

@@ -122,6 +122,8 @@ std::vector<Measurement> measure_files(const Arguments& arguments, Console& cons
     if (!arguments.picture.empty()) write_picture(arguments.picture, surface.mesh, truth);
     points = surface.mesh.vertices;
   } else {
+    if (!arguments.picture.empty())
+      throw Error(Trouble::usage, "--picture: is for a mesh or a disparity");
     const Scan scan = read_scan(arguments.measured);
     measurements = cloud_error(scan.cloud, truth, options);
     points = scan.cloud.points;
@@ -156,7 +158,26 @@ int verify_artefacts(const Arguments& arguments, Console& console) {
   return verdict.pass ? 0 : 1;
 }
 
+// What was asked for and would be passed over.
+void refuse_unused(const Arguments& arguments) {
+  const auto refuse = [](bool is_given, const char* option, const char* why) {
+    if (is_given) throw Error(Trouble::usage, std::string(option) + ": " + why);
+  };
+  if (arguments.artefacts || std::filesystem::is_directory(arguments.measured)) {
+    const char* why = "is for files; a run folder and --artefacts have it from their recipe";
+    refuse(!arguments.truth.empty(), "--truth", why);
+    refuse(!arguments.limits.empty(), "--limits", why);
+    refuse(!arguments.poses.empty(), "--poses", why);
+    refuse(!arguments.true_poses.empty(), "--true-poses", why);
+    refuse(arguments.threshold_m > 0, "--threshold", why);
+    refuse(!arguments.picture.empty(), "--picture", "is for a mesh or a disparity");
+  }
+  refuse(arguments.doffs_px != 0 && !is_disparity(arguments.measured), "--doffs",
+         "is for a disparity (.pfm)");
+}
+
 int verify(const Arguments& arguments, Console& console) {
+  refuse_unused(arguments);
   if (arguments.artefacts) return verify_artefacts(arguments, console);
   const Stopwatch watch;
   Verdict verdict;

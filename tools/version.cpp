@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/version.h"
 
+#include <fstream>
+
 #ifdef LIBSCAN_WITH_CGAL
 #include <CGAL/version.h>
-#include <fstream>
 #endif
 #include <ceres/version.h>
 #include <embree3/rtcore_config.h>

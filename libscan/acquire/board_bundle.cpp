@@ -84,7 +84,7 @@ void add_corner(const Bundle& bundle, std::size_t camera, const Eigen::Vector3d&
   const Projection seen = project_with_derivatives(bundle.cameras[camera], x);
   Eigen::Matrix<double, 2, Eigen::Dynamic> shared =
       Eigen::Matrix<double, 2, Eigen::Dynamic>::Zero(2, shared_size(bundle));
-  shared.middleCols<camera_unknowns>(camera_unknowns * static_cast<int>(camera)) = seen.by_camera;
+  shared.middleCols<camera_unknowns>(camera_unknowns * Eigen::Index(camera)) = seen.by_camera;
   if (camera > 0) shared.rightCols<twist_unknowns>() = seen.by_point * by_twist(x);
   const Eigen::Matrix<double, 2, twist_unknowns> own =
       seen.by_point * pose.linear() * by_twist(x_in_first);
@@ -140,8 +140,7 @@ Step solve(NormalEquations equations, const std::vector<int>& indices, double da
 
 Bundle moved(Bundle bundle, const Step& step) {
   for (std::size_t c = 0; c < bundle.cameras.size(); ++c) {
-    const CameraVector by =
-        step.shared.segment<camera_unknowns>(camera_unknowns * static_cast<int>(c));
+    const CameraVector by = step.shared.segment<camera_unknowns>(camera_unknowns * Eigen::Index(c));
     bundle.cameras[c] = with_unknowns(bundle.cameras[c], unknowns_of(bundle.cameras[c]) + by);
   }
   if (bundle.cameras.size() > 1)

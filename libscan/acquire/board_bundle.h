@@ -12,6 +12,9 @@
 
 namespace scan::calibrating {
 
+// Of a corner's coordinates. No corner finder is better: residuals below it are a simulation's.
+inline constexpr double least_sigma_px = 0.01;
+
 // A camera's unknowns in order: fx, fy, cx, cy, k1, k2, p1, p2, k3.
 inline constexpr int camera_unknowns = 9;
 using CameraVector = Eigen::Matrix<double, camera_unknowns, 1>;

@@ -61,4 +61,15 @@ Pose first_pose(const Camera& camera, const Board& board,
                    {shift.at<double>(0), shift.at<double>(1), shift.at<double>(2)});
 }
 
+BundleFit fit_camera(const Board& board, std::span<const BoardSighting> sightings,
+                     int distortion_terms) {
+  const Camera camera = first_camera(board, sightings);
+  Bundle bundle{
+      .board_m = corners_m(board), .cameras = {camera}, .distortion_terms = distortion_terms};
+  for (const BoardSighting& sighting : sightings)
+    bundle.pictures.push_back(
+        {{sighting.corners_px}, first_pose(camera, board, sighting.corners_px)});
+  return adjust(bundle);
+}
+
 }  // namespace scan::calibrating

@@ -6,8 +6,7 @@
 #include <span>
 
 #include "libscan/acquire/board.h"
-#include "libscan/core/camera.h"
-#include "libscan/core/pose.h"
+#include "libscan/acquire/board_bundle.h"
 
 namespace scan::calibrating {
 
@@ -19,5 +18,9 @@ Camera first_camera(const Board& board, std::span<const BoardSighting> sightings
 // by OpenCV). scan::Error (computation) if the corners allow none.
 Pose first_pose(const Camera& camera, const Board& board,
                 std::span<const Eigen::Vector2d> corners_px);
+
+// A camera and the poses of its boards from nothing but its pictures, which all show the board.
+BundleFit fit_camera(const Board& board, std::span<const BoardSighting> sightings,
+                     int distortion_terms);
 
 }  // namespace scan::calibrating

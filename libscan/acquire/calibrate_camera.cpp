@@ -5,29 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libscan/acquire/board_bundle.h"
 #include "libscan/acquire/board_start.h"
 #include "libscan/core/error.h"
 
 namespace scan {
 namespace {
 
-// No corner finder is better: residuals below it are a simulation's, not a camera's.
-constexpr double least_sigma_px = 0.01;
-
 calibrating::BundleFit fit_pictures(const Board& board, std::span<const BoardSighting> sightings,
                                     std::span<const std::size_t> used,
                                     const CalibrateOptions& options) {
   std::vector<BoardSighting> seen;
   for (const std::size_t i : used) seen.push_back(sightings[i]);
-  const Camera camera = calibrating::first_camera(board, seen);
-  calibrating::Bundle bundle{.board_m = corners_m(board),
-                             .cameras = {camera},
-                             .distortion_terms = options.distortion_terms};
-  for (const BoardSighting& sighting : seen)
-    bundle.pictures.push_back(
-        {{sighting.corners_px}, calibrating::first_pose(camera, board, sighting.corners_px)});
-  return calibrating::adjust(bundle);
+  return calibrating::fit_camera(board, seen, options.distortion_terms);
 }
 
 }  // namespace
@@ -50,7 +39,7 @@ CameraCalibration calibrate_camera(const Board& board, std::span<const BoardSigh
     fit = fit_pictures(board, sightings, used, options);
   result.camera = fit.bundle.cameras.front();
   result.rms_px = fit.rms_px;
-  result.sigma_px = std::max(fit.sigma_px, least_sigma_px);
+  result.sigma_px = std::max(fit.sigma_px, calibrating::least_sigma_px);
   result.covariance = result.sigma_px * result.sigma_px * fit.cofactor;
   for (std::size_t place = 0; place < used.size(); ++place) {
     result.pictures[used[place]].rms_px = fit.picture_rms_px[place];

@@ -112,8 +112,9 @@ double coverage(const Board& board, std::span<const BoardSighting> sightings,
   const BoardSighting& first = sightings[used.front()];
   int covered = 0;
   for (int cell = 0; cell < cells * cells; ++cell) {
-    const Eigen::Vector2d pixel((cell % cells + 0.5) * first.width_px / cells - 0.5,
-                                (cell / cells + 0.5) * first.height_px / cells - 0.5);
+    const int column = cell % cells, row = cell / cells;
+    const Eigen::Vector2d pixel((column + 0.5) * first.width_px / cells - 0.5,
+                                (row + 0.5) * first.height_px / cells - 0.5);
     covered += std::any_of(used.begin(), used.end(),
                            [&](std::size_t i) { return is_inside(board, sightings[i], pixel); });
   }
@@ -124,8 +125,9 @@ double largest_ray_sigma_px(const Camera& camera, const CameraCovariance& covari
   constexpr int steps = 8;  // the picture's corners and edges among them
   double largest = 0;
   for (int i = 0; i < (steps + 1) * (steps + 1); ++i) {
-    const Eigen::Vector2d pixel((camera.width_px - 1.0) * (i % (steps + 1)) / steps,
-                                (camera.height_px - 1.0) * (i / (steps + 1)) / steps);
+    const int column = i % (steps + 1), row = i / (steps + 1);
+    const Eigen::Vector2d pixel((camera.width_px - 1.0) * column / steps,
+                                (camera.height_px - 1.0) * row / steps);
     const auto ray = ray_through(camera, pixel);
     if (!ray) continue;  // beyond the fold of the distortion there is no ray
     const auto by_camera = project_with_derivatives(camera, *ray).by_camera;

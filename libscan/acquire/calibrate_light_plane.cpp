@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libscan/acquire/board_bundle.h"
 #include "libscan/acquire/board_start.h"
 #include "libscan/acquire/stripe_peak.h"
 #include "libscan/acquire/stripe_plane.h"
@@ -77,8 +76,8 @@ std::vector<BoardStripe> stripes_of(const Board& board, const Camera& camera,
   for (std::size_t place = 0; place < used.size(); ++place) {
     stripes.push_back(stripe_on(board, camera, poses.bundle.pictures[place].first_from_board,
                                 pictures[used[place]].stripe));
-    stripes.back().pose_covariance =
-        std::max(poses.sigma_px * poses.sigma_px, 1e-4) * poses.pose_cofactors[place];
+    const double sigma_px = std::max(poses.sigma_px, calibrating::least_sigma_px);
+    stripes.back().pose_covariance = sigma_px * sigma_px * poses.pose_cofactors[place];
     if (uses) (*uses)[used[place]].rms_px = poses.picture_rms_px[place];
   }
   return stripes;

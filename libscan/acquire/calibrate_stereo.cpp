@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "libscan/acquire/board_bundle.h"
 #include "libscan/acquire/board_start.h"
 #include "libscan/core/error.h"
 
@@ -15,8 +14,6 @@ namespace {
 
 using calibrating::Bundle;
 using calibrating::BundleFit;
-
-constexpr double least_sigma_px = 0.01;  // as for one camera
 
 // One side of the pairs; what the other side lacks counts for it, too.
 std::vector<BoardSighting> side_of(std::span<const BoardPair> pairs,
@@ -41,21 +38,11 @@ std::vector<BoardSighting> chosen(const std::vector<BoardSighting>& all,
   return some;
 }
 
-// Each camera by itself, with its boards' poses: where the joint adjustment begins.
-BundleFit fit_alone(const Board& board, std::span<const BoardSighting> seen, int terms) {
-  Bundle bundle{.board_m = corners_m(board),
-                .cameras = {calibrating::first_camera(board, seen)},
-                .distortion_terms = terms};
-  for (const BoardSighting& sighting : seen)
-    bundle.pictures.push_back(
-        {{sighting.corners_px},
-         calibrating::first_pose(bundle.cameras.front(), board, sighting.corners_px)});
-  return calibrating::adjust(bundle);
-}
-
+// The joint adjustment begins where each camera by itself ends.
 BundleFit fit_pairs(const Board& board, const std::vector<BoardSighting>& left,
                     const std::vector<BoardSighting>& right, int terms) {
-  const BundleFit one = fit_alone(board, left, terms), other = fit_alone(board, right, terms);
+  const BundleFit one = calibrating::fit_camera(board, left, terms),
+                  other = calibrating::fit_camera(board, right, terms);
   Bundle bundle{.board_m = corners_m(board),
                 .cameras = {one.bundle.cameras.front(), other.bundle.cameras.front()},
                 .second_from_first = other.bundle.pictures.front().first_from_board *
@@ -90,7 +77,7 @@ void fill_figures(const BundleFit& fit, RigCalibration& result) {
   const Bundle& bundle = fit.bundle;
   result.rig = {bundle.cameras[0], bundle.cameras[1], bundle.second_from_first};
   result.rms_px = fit.rms_px;
-  result.sigma_px = std::max(fit.sigma_px, least_sigma_px);
+  result.sigma_px = std::max(fit.sigma_px, calibrating::least_sigma_px);
   result.covariance = result.sigma_px * result.sigma_px * fit.cofactor;
   const Eigen::Vector3d shift = bundle.second_from_first.translation();
   result.baseline_m = shift.norm();

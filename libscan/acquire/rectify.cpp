@@ -92,8 +92,9 @@ Image<std::uint8_t> resampled(const Image<std::uint8_t>& image, const Camera& ca
                               const Eigen::Vector2d& centre_px) {
   Image<std::uint8_t> turned(image.width, image.height);
   parallel_for(turned.pixels.size(), [&](std::size_t i) {
-    const Eigen::Vector2d pixel(static_cast<double>(i % static_cast<std::size_t>(image.width)),
-                                static_cast<double>(i / static_cast<std::size_t>(image.width)));
+    const auto width = static_cast<std::size_t>(image.width);
+    const std::size_t row = i / width, column = i % width;
+    const Eigen::Vector2d pixel(column, row);
     const Eigen::Vector2d flat = (pixel - centre_px) / focal_px;
     const auto seen = project(camera, camera_from_rectified * flat.homogeneous());
     if (seen && seen->x() >= 0 && seen->y() >= 0 && seen->x() <= image.width - 1 &&

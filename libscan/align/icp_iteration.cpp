@@ -150,10 +150,12 @@ Vector6 IcpIteration::accept_lower(const State& state, Step step) {
 
 // Partners jump as the pose moves: below the noise the objective is rough, and where it is least is
 // chance. Its gradient, a sum over all pairs, is less so: Newton's steps lead to where it vanishes,
-// extrapolated, since the choice of partners hides much of what a motion changes. Returns whether
-// they did, or came as near as the jumps let them; else nothing has moved.
-bool IcpIteration::settle(const State& state, Step step) {
+// extrapolated, since the choice of partners hides much of what a motion changes. At rest where
+// they did, or came as near as the jumps let them; on the way where the best of them is lower at
+// least; failed where nothing has moved.
+IcpIteration::Settling IcpIteration::settle(const State& state, Step step) {
   const Pose start = pose_;
+  const double before_m2 = finder_.objective_m2(matches_, weighing_);
   const double enough = stride_ > 1 ? standard_error : negligible_share_of_sigma;
   State here = state;
   Extrapolation extrapolation;
@@ -162,7 +164,8 @@ bool IcpIteration::settle(const State& state, Step step) {
   for (int k = 0, at = 0; k < most_settling && here.couples.size() >= least_pairs; ++k) {
     pose_ = moved(pose_, extrapolation.move(step.twist, step.squares_m2, step.sigma_m), here.frame);
     finder_.find(pose_, sample_, matches_);
-    if (small(step.twist, here.frame) || step.change_m <= enough * step.sigma_m) return true;
+    if (small(step.twist, here.frame) || step.change_m <= enough * step.sigma_m)
+      return Settling::at_rest;
     here = examine(weighing_);
     step = next_step(here);
     if (step.change_m < least_m)
@@ -170,10 +173,13 @@ bool IcpIteration::settle(const State& state, Step step) {
     else if (k - at >= most_idle)
       break;
   }
-  const bool near = least_m <= step.sigma_m;
-  pose_ = near ? best : start;
+  pose_ = best;
   finder_.find(pose_, sample_, matches_);
-  return near;
+  if (least_m <= step.sigma_m) return Settling::at_rest;
+  if (finder_.objective_m2(matches_, weighing_) < before_m2) return Settling::on_the_way;
+  pose_ = start;
+  finder_.find(pose_, sample_, matches_);
+  return Settling::failed;
 }
 
 void IcpIteration::count_iteration(IcpResult& result) const {
@@ -191,9 +197,10 @@ bool IcpIteration::iterate(IcpResult& result) {
       {weighing_.loss.scale_m, finder_.objective_m2(matches_, weighing_), step.sigma_m});
   const bool last_scale = scale_in_medians_ <= narrowest_scale && settled_;
   bool done = false;
-  if (last_scale && !creeps() && settle(state, step))
+  const Settling settling = last_scale && !creeps() ? settle(state, step) : Settling::failed;
+  if (settling == Settling::at_rest)
     done = fitting_scale_m() >= least_narrowing * weighing_.loss.scale_m;
-  else
+  else if (settling == Settling::failed)
     done = small(accept_lower(state, step), state.frame) && last_scale;
   count_iteration(result);
   if (done && stride_ == 1) return false;
@@ -255,7 +262,7 @@ void IcpIteration::report(const State& state, IcpResult& result) const {
 void IcpIteration::run(const Pose& guess, IcpResult& result) {
   bool moving = descend(guess, result);
   State state = examine(weighing_);
-  if (!moving && !near_ && seek_smoother(guess, result)) state = examine(weighing_);
+  if (!moving && seek_better(guess, result)) state = examine(weighing_);
   // What was moved along them meant nothing: once more from the guess without.
   if (state.couples.size() >= least_pairs && !moving && withhold_more(state)) {
     result.history.clear();

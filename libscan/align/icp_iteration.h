@@ -27,6 +27,8 @@ class IcpIteration {
     TwistBasis weak{6, 0};
   };
 
+  enum class Settling { failed, on_the_way, at_rest };
+
   // Where a descent ended, with all points of the source.
   struct Rest {
     Pose pose = Pose::Identity();
@@ -44,7 +46,7 @@ class IcpIteration {
   State widened_for_weak(State state);
   Step next_step(const State& state) const;
   Vector6 accept_lower(const State& state, Step step);
-  bool settle(const State& state, Step step);
+  Settling settle(const State& state, Step step);
   bool small(const Vector6& twist, const DataFrame& frame) const;
   bool iterate(IcpResult& result);
   bool descend(const Pose& guess, IcpResult& result);
@@ -55,8 +57,9 @@ class IcpIteration {
   // icp_approach.cpp
   bool is_near() const;
   double roughness() const;
+  double contradicted() const;
   void approach(IcpResult& result);
-  bool seek_smoother(const Pose& guess, IcpResult& result);
+  bool seek_better(const Pose& guess, IcpResult& result);
   bool withhold_more(const State& state);
   Stop judge(const State& state) const;
   void report(const State& state, IcpResult& result) const;

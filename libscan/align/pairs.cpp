@@ -16,6 +16,8 @@ namespace {
 // Points off the overlap take several times as long to find a partner for as others, and follow one
 // another: small chunks share them out.
 constexpr std::size_t chunk = 128;
+// Losses are a few nanoseconds each: below this many, handing them over costs more than it saves.
+constexpr std::size_t light_chunk = 4096;
 // Beyond three scales the loss weighs a residual with 1 % and its slope falls.
 constexpr double most_scales = 3;
 // Thickness of the planes of generalised ICP in units of their extent, where the scan does not tell
@@ -31,6 +33,21 @@ double noise_across_m(const PreparedCloud& cloud) {
     if (!cloud.normals[i].isZero(0))
       sigmas_m.push_back(std::sqrt(cloud.normals[i].dot(cloud.covariances[i] * cloud.normals[i])));
   return median(std::move(sigmas_m));
+}
+
+// Inverse of the covariances' sum of two planes, each spread^2 (1 - n n^T) + noise^2 n n^T: of unit
+// normals the sum p and the difference q are orthogonal, so that with k = spread^2 - noise^2 it is
+// 2 spread^2 - k (p p^T + q q^T) / 2, whose third principal axis is p x q.
+Eigen::Matrix3d information_of_planes(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                      double spread_m, double noise_m) {
+  const Eigen::Vector3d p = a + b, q = a - b;
+  const double along_m2 = 2 * spread_m * spread_m, k = 0.5 * along_m2 - noise_m * noise_m;
+  const double of_p = k / (2 * along_m2 * (along_m2 - 0.5 * k * p.squaredNorm()));
+  const double of_q = k / (2 * along_m2 * (along_m2 - 0.5 * k * q.squaredNorm()));
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / along_m2;
+  information.noalias() += of_p * p * p.transpose();
+  information.noalias() += of_q * q * q.transpose();
+  return information;
 }
 
 // Finds the nearest points of a target to queries that follow one another closely.
@@ -168,6 +185,11 @@ Eigen::Matrix3d PairFinder::covariance_m2(const PreparedCloud& cloud, std::uint3
 // Scaled so that r is the distance where two planes of usual noise lie parallel.
 Eigen::Matrix3d PairFinder::metric(const Pose& pose, const Couple& couple) const {
   const Eigen::Matrix3d& turn = pose.linear();
+  const Eigen::Vector3d& there = target_.normals[couple.target];
+  const Eigen::Vector3d here = turn * source_.normals[couple.source];
+  const bool usual = source_.covariances.empty() && target_.covariances.empty();
+  if (usual && !there.isZero(0) && !here.isZero(0))
+    return 2 * noise_m_ * noise_m_ * information_of_planes(there, here, spread_m_, noise_m_);
   const Eigen::Matrix3d sum = covariance_m2(target_, couple.target) +
                               turn * covariance_m2(source_, couple.source) * turn.transpose();
   return 2 * noise_m_ * noise_m_ * sum.inverse();
@@ -222,7 +244,7 @@ double PairFinder::median_residual_m(std::span<const Match> matches) const {
 
 double PairFinder::objective_m2(std::span<const Match> matches, const Weighing& weighing) const {
   const double sum_m2 =
-      ordered_sum(matches.size(), chunk, 0.0, [&](std::size_t begin, std::size_t end) {
+      ordered_sum(matches.size(), light_chunk, 0.0, [&](std::size_t begin, std::size_t end) {
         double part_m2 = 0;
         for (std::size_t k = begin; k < end; ++k)
           part_m2 += weighing.loss.rho_m2(std::min(matches[k].residual_m, weighing.limit_m));

@@ -13,6 +13,8 @@ namespace scan {
 namespace {
 
 constexpr std::size_t chunk = 256;
+// Sums of a few operations: below this many, handing them over costs more than it saves.
+constexpr std::size_t light_chunk = 2048;
 // So many pairs decide what is weak; more would cost time and tell nothing new.
 constexpr std::size_t most_judged = 4096;
 
@@ -69,7 +71,7 @@ DataFrame frame_of(const PairFinder& finder, const Pose& pose, std::span<const C
   // About the pose's image of the source's middle, which is near enough to the pairs' own.
   const Eigen::Vector3d middle = pose.translation();
   const Sum sum =
-      ordered_sum(couples.size(), chunk, Sum{}, [&](std::size_t begin, std::size_t end) {
+      ordered_sum(couples.size(), light_chunk, Sum{}, [&](std::size_t begin, std::size_t end) {
         Sum part;
         for (const Couple& couple : couples.subspan(begin, end - begin)) {
           const Eigen::Vector3d arm = pose.linear() * finder.source().points[couple.source];

@@ -221,6 +221,7 @@ SolvedPoses solve_edges(const PreparedScans& scans, std::span<const Pose> starts
     return edges[a].overlap * edges[a].agreement > edges[b].overlap * edges[b].agreement;
   });
   std::vector<PoseEdge> graph;
+  graph.reserve(order.size());
   const double sigma_m = guess_sigma_m(scans, edges);
   for (const std::size_t k : order) graph.push_back(graph_edge(scans, edges[k], sigma_m));
   PoseGraph solved = solve_pose_graph(starts, graph, anchor);

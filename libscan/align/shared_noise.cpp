@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t most_wide_patches = 64, least_wide_patches = 32;
 constexpr std::size_t narrow_in_wide = 4;
 constexpr std::size_t least_points_of_patch = 4;
-constexpr std::size_t parallel_points = 8192;  // below, a task costs more than it saves
+constexpr std::size_t parallel_points = 1024;  // some 100 us; below, a task costs what it saves
 // Noise of their own is estimated at 1 +- 0.32 by 64 patches (6.5 / 64 below). Cut off at 1 the
 // inverses of its estimates would have a mean of 0.87, cut off so many sigmas below 0.99.
 constexpr double least_in_sigmas = 1.5;

@@ -79,7 +79,7 @@ std::vector<std::uint32_t> finite_points(const PointCloud& cloud) {
     }
   };
   // What is not finite is no longer zero when taken from itself: no branch to foretell.
-  const auto all_finite = [](const Eigen::Vector3d& x) { return (x - x).sum() == 0; };
+  const auto all_finite = [](const Eigen::Vector3d& x) -> unsigned { return (x - x).sum() == 0; };
   if (cloud.normals.empty())
     keep([&](std::size_t i) { return all_finite(cloud.points[i]); });
   else

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double least_cosine = 0.5;  // of 60 degrees
 constexpr double least_roundness = 0.01;
+constexpr double flat = 1e-6;
 
 struct Shape {
   Eigen::Vector3d twice_area;
@@ -23,6 +24,7 @@ struct Shape {
     const double longest2 =
         std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     roundness = longest2 > 0 ? twice_area.norm() / longest2 : 0;
+    if (roundness < flat) roundness = 0;  // rounding
   }
 };
 
@@ -69,6 +71,7 @@ bool CollapsingMesh::keeps_shape(std::uint32_t moved, std::uint32_t other,
     const auto corner = [&](int k) { return c[k] == moved ? place : mesh_.vertices[c[k]]; };
     const Shape before(at(c[0]), at(c[1]), at(c[2])), after(corner(0), corner(1), corner(2));
     if (after.roundness < std::min(least_roundness, before.roundness)) return false;
+    if (after.roundness < least_roundness) continue;
     const Eigen::Vector3d& side =
         before.roundness > least_roundness ? before.twice_area : star_side;
     if (side.dot(after.twice_area) < least_cosine * side.norm() * after.twice_area.norm())
@@ -111,8 +114,57 @@ void CollapsingMesh::collapse(std::uint32_t kept, std::uint32_t gone,
   mesh_.vertices[kept] = place;
 }
 
+std::uint32_t CollapsingMesh::triangle_of(std::uint32_t a, std::uint32_t b) const {
+  for (const std::uint32_t t : around_[a])
+    for (int k = 0; k < 3; ++k)
+      if (mesh_.triangles[t][k] == a && mesh_.triangles[t][(k + 1) % 3] == b) return t;
+  return static_cast<std::uint32_t>(mesh_.triangles.size());
+}
+
+std::uint32_t CollapsingMesh::corner_beside(std::uint32_t t, std::uint32_t a,
+                                            std::uint32_t b) const {
+  const Triangle& c = mesh_.triangles[t];
+  return *std::find_if(c.begin(), c.end(), [&](std::uint32_t v) { return v != a && v != b; });
+}
+
+bool CollapsingMesh::may_flip(std::uint32_t a, std::uint32_t b) const {
+  const std::uint32_t one = triangle_of(a, b), two = triangle_of(b, a);
+  if (std::max(one, two) == mesh_.triangles.size()) return false;
+  const std::uint32_t c = corner_beside(one, a, b), d = corner_beside(two, a, b);
+  const auto beside_c = neighbours(c);
+  if (c == d || std::binary_search(beside_c.begin(), beside_c.end(), d)) return false;
+  const Shape old_one(at(a), at(b), at(c)), old_two(at(b), at(a), at(d));
+  if (std::max(old_one.roundness, old_two.roundness) <= sliver_height)
+    return (at(c) - at(d)).squaredNorm() < (at(a) - at(b)).squaredNorm();
+  const Eigen::Vector3d& side =
+      old_one.roundness > old_two.roundness ? old_one.twice_area : old_two.twice_area;
+  for (const Shape& half : {Shape(at(a), at(d), at(c)), Shape(at(d), at(b), at(c))}) {
+    if (half.roundness <= std::min(old_one.roundness, old_two.roundness)) return false;
+    if (side.dot(half.twice_area) < least_cosine * side.norm() * half.twice_area.norm())
+      return false;
+  }
+  return true;
+}
+
+void CollapsingMesh::flip(std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t one = triangle_of(a, b), two = triangle_of(b, a);
+  const std::uint32_t c = corner_beside(one, a, b), d = corner_beside(two, a, b);
+  mesh_.triangles[one] = {a, d, c};
+  mesh_.triangles[two] = {d, b, c};
+  std::erase(around_[b], one);
+  std::erase(around_[a], two);
+  for (const auto& [vertex, triangle] : {std::pair(d, one), std::pair(c, two)}) {
+    around_[vertex].push_back(triangle);
+    std::sort(around_[vertex].begin(), around_[vertex].end());
+  }
+}
+
 Mesh CollapsingMesh::mesh() const {
   std::vector<std::uint32_t> vertex_of;
+  return mesh(vertex_of);
+}
+
+Mesh CollapsingMesh::mesh(std::vector<std::uint32_t>& vertex_of) const {
   return kept_triangles(mesh_, is_alive_, vertex_of);
 }
 

@@ -45,20 +45,23 @@ bool may_hold_zero(const FieldCell& cell) {
   return false;
 }
 
-// Root of the parabola with spline coefficients q along a cell, where its ends differ in sign.
-double parabola_root(const std::array<double, 3>& q) {
+// Root of the parabola with spline coefficients q along a cell one of whose ends counts as inside.
+// Where the parabola does not change its sign, the end that was judged otherwise is on a wall, or
+// on the level set to rounding: there the crossing is.
+double parabola_root(const std::array<double, 3>& q, bool start_inside) {
   const double start = (q[0] + q[1]) / 2, slope = q[1] - q[0], bend = (q[0] - 2 * q[1] + q[2]) / 2;
   const double end = (q[1] + q[2]) / 2;
-  if ((start < 0) == (end < 0)) return start < end ? 0 : 1;  // an end on the wall: that is outside
-  // start + slope t + bend t^2 = 0 without cancellation; the one root between the ends.
+  if ((start < 0) == (end < 0)) return (start < 0) != start_inside ? 0 : 1;
+  // start + slope t + bend t^2 = 0 without cancellation; the one root between the ends, past one of
+  // them by rounding where the function vanishes there.
   const double root = std::sqrt(std::max(0.0, slope * slope - 4 * bend * start));
   const double sum = -(slope + std::copysign(root, slope)) / 2;
   const double first = sum / bend, second = start / sum;
-  return second >= 0 && second <= 1 ? second : first;
+  return std::abs(first - 0.5) < std::abs(second - 0.5) ? first : second;
 }
 
 // Where the function vanishes along an edge of the cell, as a share of the edge.
-double edge_parameter(const FieldCell& cell, int edge) {
+double edge_parameter(const FieldCell& cell, const std::array<double, 8>& corners, int edge) {
   constexpr int strides[3] = {1, 3, 9};
   const int axis = edge / 4, corner = edge_start_corner(edge);
   const int start = (corner & 1) + 3 * (corner >> 1 & 1) + 9 * (corner >> 2);
@@ -68,17 +71,18 @@ double edge_parameter(const FieldCell& cell, int edge) {
     const double* at = cell.coefficients.data() + start + i * strides[axis];
     q[i] = (at[0] + at[u] + at[v] + at[u + v]) / 4;
   }
-  const double t = parabola_root(q);
+  const double t = parabola_root(q, corners[corner] < 0);
   return std::isfinite(t) ? std::clamp(t, snap_guard, 1 - snap_guard) : 0.5;
 }
 
 // The mean of a loop, moved along the gradient to the level set as long as it stays in the cell.
-Eigen::Vector3d loop_centre(const FieldCell& cell, const signed char* edges, int size) {
+Eigen::Vector3d loop_centre(const FieldCell& cell, const std::array<double, 8>& corners,
+                            const signed char* edges, int size) {
   Eigen::Vector3d in_cell = Eigen::Vector3d::Zero();
   for (int i = 0; i < size; ++i) {
     const int corner = edge_start_corner(edges[i]);
     in_cell += Eigen::Vector3d(corner & 1, corner >> 1 & 1, corner >> 2) +
-               edge_parameter(cell, edges[i]) * Eigen::Vector3d::Unit(edges[i] / 4);
+               edge_parameter(cell, corners, edges[i]) * Eigen::Vector3d::Unit(edges[i] / 4);
   }
   in_cell /= size;
   for (int step = 0; step < 5; ++step) {
@@ -96,13 +100,13 @@ void add_crossed(const FieldCell& cell, const std::array<double, 8>& corners, Cr
   CrossedCell crossed{.place = cell.place, .polygons = cell_polygons(corners), .crossing = {}};
   for (int axis = 0; axis < 3; ++axis) {
     const bool crosses = (corners[0] < 0) != (corners[1 << axis] < 0);
-    crossed.crossing[axis] = crosses ? edge_parameter(cell, 4 * axis) : -1;
+    crossed.crossing[axis] = crosses ? edge_parameter(cell, corners, 4 * axis) : -1;
   }
   crossed.first_centre = static_cast<std::uint32_t>(out.centres.size());
   const signed char* edges = crossed.polygons.edges.data();
   for (int loop = 0; loop < crossed.polygons.loops; edges += crossed.polygons.sizes[loop++])
     if (needs_centre(crossed.polygons.sizes[loop]))
-      out.centres.push_back(loop_centre(cell, edges, crossed.polygons.sizes[loop]));
+      out.centres.push_back(loop_centre(cell, corners, edges, crossed.polygons.sizes[loop]));
   out.cells.push_back(crossed);
 }
 

@@ -16,8 +16,8 @@
 namespace scan {
 namespace {
 
-constexpr double least_curvature =
-    0.1;                             // of the largest eigenvalue: normals that differ by 0.3 rad
+// Of the largest eigenvalue: normals 0.3 rad off their mean.
+constexpr double least_curvature = 0.1;
 constexpr double sharp_reach = 1.5;  // in cells: edges lie outside of the rounded surface
 
 using Members = std::vector<std::vector<std::uint32_t>>;
@@ -49,7 +49,7 @@ class Placer {
     for (const std::uint32_t v : members) mean += mesh_.vertices[v] - mesh_.vertices[members[0]];
     mean = mesh_.vertices[members[0]] + mean / static_cast<double>(members.size());
     if (sharp_)
-      if (const Placed placed = on_feature(members, mean); placed.pieces_met > 0) return placed;
+      if (Placed placed = on_feature(members, mean); placed.pieces_met > 0) return placed;
     return {meeting_of_planes(members, mean), 0};
   }
 
@@ -215,6 +215,7 @@ SharpReport make_dual(SurfaceResult& result, std::span<const Eigen::Vector3d> po
   std::vector<Placer::Placed> placed(members.size());
   parallel_for(members.size(), [&](std::size_t i) { placed[i] = placer.place(members[i]); });
   std::vector<Eigen::Vector3d> places;
+  places.reserve(placed.size());
   for (const Placer::Placed& p : placed) places.push_back(p.at);
   Polygons dual(polygons, std::move(places));
   const Mesh mesh = dual.mesh();

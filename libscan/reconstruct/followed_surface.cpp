@@ -58,16 +58,19 @@ class Follower {
   Follower(int depth, const UnitField& field, std::size_t most_cells)
       : field_(field), cells_((1 << depth)), most_cells_(most_cells) {}
 
+  // Most seeds lie in a cell that is crossed, or beside one: the cells around others alone are
+  // looked into, since each corner costs a value of the field.
   void follow(std::span<const Eigen::Vector3d> seeds) {
-    std::vector<std::uint64_t> front = cells_around(seeds);
-    while (!front.empty()) {
-      evaluate_corners(front);
-      std::vector<std::uint64_t> next;
-      for (const std::uint64_t cell : front) visit(cell, next);
-      sort_unique(next);
-      std::erase_if(next, [&](std::uint64_t key) { return !seen_.insert(key).second; });
-      front = std::move(next);
-    }
+    follow_from(cells_of(seeds, [](const Place& cell) { return std::vector(1, cell); }));
+    std::unordered_set<std::uint64_t> crossed;
+    for (const CrossedCell& cell : crossed_) crossed.insert(cell.key);
+    follow_from(cells_of(seeds, [&](const Place& cell) {
+      std::vector<Place> around = cells_about(cell);
+      const bool is_near = std::any_of(around.begin(), around.end(), [&](const Place& place) {
+        return is_inside(place) && crossed.contains(key_of(place));
+      });
+      return is_near ? std::vector<Place>{} : around;
+    }));
     std::sort(crossed_.begin(), crossed_.end(),
               [](const CrossedCell& a, const CrossedCell& b) { return a.key < b.key; });
   }
@@ -79,18 +82,36 @@ class Follower {
     return Eigen::Vector3d(corner[0], corner[1], corner[2]) / cells_;
   }
 
-  std::vector<std::uint64_t> cells_around(std::span<const Eigen::Vector3d> seeds) {
+  void follow_from(std::vector<std::uint64_t> front) {
+    while (!front.empty()) {
+      evaluate_corners(front);
+      std::vector<std::uint64_t> next;
+      for (const std::uint64_t cell : front) visit(cell, next);
+      sort_unique(next);
+      std::erase_if(next, [&](std::uint64_t key) { return !seen_.insert(key).second; });
+      front = std::move(next);
+    }
+  }
+
+  static std::vector<Place> cells_about(const Place& cell) {
+    std::vector<Place> about;
+    for (int i = 0; i < 27; ++i)
+      about.push_back({cell[0] + i % 3 - 1, cell[1] + i / 3 % 3 - 1, cell[2] + i / 9 - 1});
+    return about;
+  }
+
+  // New ones among those that `of_cell` names for the seeds' own.
+  template <class OfCell>
+  std::vector<std::uint64_t> cells_of(std::span<const Eigen::Vector3d> seeds, OfCell of_cell) {
     std::vector<std::uint64_t> keys;
-    for (const auto& seed : seeds)
-      for (int i = 0; i < 27; ++i) {
-        Place place;
-        const int offset[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
-        for (int a = 0; a < 3; ++a)
-          place[a] = static_cast<std::int32_t>(std::floor(seed[a] * cells_)) + offset[a];
+    for (const auto& seed : seeds) {
+      Place own;
+      for (int a = 0; a < 3; ++a) own[a] = static_cast<std::int32_t>(std::floor(seed[a] * cells_));
+      for (const Place& place : of_cell(own))
         if (is_inside(place)) keys.push_back(key_of(place));
-      }
+    }
     sort_unique(keys);
-    seen_.insert(keys.begin(), keys.end());
+    std::erase_if(keys, [&](std::uint64_t key) { return !seen_.insert(key).second; });
     return keys;
   }
 

@@ -235,7 +235,7 @@ SurfaceResult rbf(const PointCloud& cloud, const RbfOptions& options, const Prog
     if (field.add_level(radius) < least_share || radius <= last) break;
   }
   if (progress) progress("surface", 0);
-  const double cell = std::max(spacing, cell_sigmas * median(samples.sigma));
+  const double cell = spacing + cell_sigmas * median(samples.sigma);  // as sample_depths() has it
   const int depth = static_cast<int>(
       std::clamp(std::ceil(-std::log2(cell)), 3.0, static_cast<double>(options.max_depth)));
   SurfaceResult result =

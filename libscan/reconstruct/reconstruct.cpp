@@ -9,6 +9,7 @@
 #include "libscan/reconstruct/delaunay.h"
 #include "libscan/reconstruct/dual_mesh.h"
 #include "libscan/reconstruct/poisson.h"
+#include "libscan/reconstruct/power_crust.h"
 #include "libscan/reconstruct/scale_space.h"
 #include "libscan/reconstruct/sharp_features.h"
 #include "libscan/reconstruct/support.h"
@@ -36,6 +37,8 @@ SurfaceResult surface_by(ReconstructMethod method, const PreparedPoints& points,
       return delaunay(points.cloud);
     case ReconstructMethod::scale_space:
       return scale_space(points.cloud);
+    case ReconstructMethod::power_crust:
+      return power_crust(points.cloud, points.spacing_m);
   }
   throw Error(Trouble::usage, "reconstruct: unknown method");
 }
@@ -83,8 +86,9 @@ SharpReport reshape(SurfaceResult& result, const PreparedPoints& prepared,
 }  // namespace
 
 const std::vector<std::string>& reconstruct_method_names() {
-  static const std::vector<std::string> names{"auto", "ssd",          "poisson",  "mls",
-                                              "rbf",  "range-fusion", "delaunay", "scale-space"};
+  static const std::vector<std::string> names{"auto",     "ssd",         "poisson",
+                                              "mls",      "rbf",         "range-fusion",
+                                              "delaunay", "scale-space", "power-crust"};
   return names;
 }
 

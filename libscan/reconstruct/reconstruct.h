@@ -28,7 +28,8 @@ enum class ReconstructMethod {
   rbf,
   range_fusion,
   delaunay,
-  scale_space
+  scale_space,
+  power_crust
 };
 
 // In the order of the enumeration, as they are written.

@@ -9,6 +9,7 @@
 
 #include "libscan/core/parallel.h"
 #include "libscan/reconstruct/one_sided_fits.h"
+#include "libscan/reconstruct/slivers.h"
 #include "libscan/reconstruct/split_triangles.h"
 #include "libscan/reconstruct/support.h"
 
@@ -46,6 +47,12 @@ class Sharpener {
   }
 
   SplitMesh split() const { return split_triangles(mesh_, crossings_, corners_); }
+  // Of each vertex of the split mesh, whether it is new or may have been moved.
+  std::vector<char> touched(const SplitMesh& split) const {
+    std::vector<char> marks(split.mesh.vertices.size(), 1);
+    for (std::size_t v = 0; v < sides_.size(); ++v) marks[v] = sides_[v].count > 0;
+    return marks;
+  }
   const SharpReport& report() const { return report_; }
 
  private:
@@ -191,12 +198,17 @@ SharpReport sharpen(SurfaceResult& result, std::span<const Eigen::Vector3d> poin
   Sharpener sharpener(result.surface, fits);
   sharpener.run();
   SplitMesh split = sharpener.split();
-  result.surface = std::move(split.mesh);
+  std::vector<std::uint32_t> vertex_of;
+  result.surface = without_slivers(split.mesh, sharpener.touched(split), vertex_of);
   result.support_m = distance_to_points(result.surface, points);
-  for (std::vector<double>* values : {&result.standard_error_m, &result.vertex_smoothing_m})
-    if (!values->empty())
-      for (const MeshEdge& from : split.new_between)
-        values->push_back(std::max((*values)[from[0]], (*values)[from[1]]));
+  for (std::vector<double>* values : {&result.standard_error_m, &result.vertex_smoothing_m}) {
+    if (values->empty()) continue;
+    for (const MeshEdge& from : split.new_between)
+      values->push_back(std::max((*values)[from[0]], (*values)[from[1]]));
+    std::vector<double> kept;
+    for (const std::uint32_t v : vertex_of) kept.push_back((*values)[v]);
+    *values = std::move(kept);
+  }
   return sharpener.report();
 }
 

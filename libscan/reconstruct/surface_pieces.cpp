@@ -85,7 +85,7 @@ class PolygonFinder {
       if (around.empty() || around.back() != piece) around.push_back(piece);
       const Triangle& corners = mesh_.triangles[t];
       const auto at = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
-      t = across_[3 * t + (at + 2) % 3];
+      t = across_[std::size_t{3} * t + std::size_t(at + 2) % 3];
       if (t == none) return around.clear();
     } while (t != triangle_at_[vertex]);
     if (around.size() > 1 && around.front() == around.back()) around.pop_back();

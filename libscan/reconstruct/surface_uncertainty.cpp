@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numeric>
 #include <string>
 #include <tuple>
 
@@ -43,31 +41,26 @@ class Patch {
   }
 
   double of_points() const {
-    double sum = independent();
-    if (common_.in_windows.empty()) return sum;
-    // Those that share noise follow one another, by scan and row.
-    std::vector<std::size_t> order(points_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto place = [&](std::size_t i) {
-      return std::tuple(scan_of(points_[i].point), common_.in_windows[points_[i].point].x(), i);
-    };
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t i, std::size_t j) { return place(i) < place(j); });
-    for (std::size_t k = 0; k < order.size(); ++k)
-      for (std::size_t l = k + 1; l < order.size() && may_share(order[k], order[l]); ++l)
-        sum += 2 * sigma_[order[k]] * sigma_[order[l]] * correlation(order[k], order[l]);
-    return sum;
+    return common_.in_windows.empty() ? independent() : independent() + shared();
   }
 
   double of_poses() const {
     if (common_.poses.scans.empty()) return 0;
-    std::map<std::uint32_t, Vector6> levers;
+    std::vector<Eigen::Vector4d> sums(common_.poses.scans.size(), Eigen::Vector4d::Zero());
+    std::vector<bool> takes_part(sums.size(), false);
     for (const WeighedPoint& p : points_) {
-      const auto& stated = common_.poses.scans[scan_of(p.point)];
+      sums[scan_of(p.point)] += p.weight * cloud_.points[p.point].homogeneous();
+      takes_part[scan_of(p.point)] = true;
+    }
+    std::vector<Lever> levers;
+    for (std::uint32_t s = 0; s < sums.size(); ++s) {
+      if (!takes_part[s]) continue;
+      const auto& stated = common_.poses.scans[s];
       if (!stated) return std::numeric_limits<double>::infinity();
+      const double weight = sums[s].w();
       Vector6 lever;
-      lever << (cloud_.points[p.point] - stated->centre).cross(normal_), normal_;
-      levers.try_emplace(scan_of(p.point), Vector6::Zero()).first->second += p.weight * lever;
+      lever << (sums[s].head<3>() - weight * stated->centre).cross(normal_), weight * normal_;
+      levers.emplace_back(s, lever);
     }
     double sum = 0;
     for (auto a = levers.begin(); a != levers.end(); ++a) {
@@ -78,12 +71,43 @@ class Patch {
   }
 
  private:
-  using Lever = std::pair<const std::uint32_t, Vector6>;
+  using Lever = std::pair<std::uint32_t, Vector6>;
 
   // Were each point's error its own.
   double independent() const {
     double sum = 0;
     for (const double s : sigma_) sum += s * s;
+    return sum;
+  }
+
+  // What their correlations add.
+  double shared() const {
+    // Those that may share noise, of one scan and within a window's rows, follow one another.
+    using Place = std::tuple<std::uint32_t, double, std::size_t>;
+    std::vector<Place> places;
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      places.emplace_back(scan_of(points_[i].point), common_.in_windows[points_[i].point].x(), i);
+    std::sort(places.begin(), places.end());
+    const auto count = static_cast<Eigen::Index>(places.size());
+    Eigen::ArrayXd row(count), column(count), sigma(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const std::size_t i = std::get<2>(places[static_cast<std::size_t>(k)]);
+      row(k) = common_.in_windows[points_[i].point].x();
+      column(k) = common_.in_windows[points_[i].point].y();
+      sigma(k) = sigma_[i];
+    }
+    double sum = 0;
+    const auto scan = [&](Eigen::Index k) {
+      return std::get<0>(places[static_cast<std::size_t>(k)]);
+    };
+    for (Eigen::Index k = 0, end = 0; k < count; ++k) {
+      while (end < count && (end <= k || (scan(end) == scan(k) && row(end) - row(k) < 1))) ++end;
+      const Eigen::Index first = k + 1, others = end - first;
+      sum += 2 * sigma(k) *
+             (sigma.segment(first, others) * (1 + row(k) - row.segment(first, others)) *
+              (1 - (column.segment(first, others) - column(k)).abs()).max(0))
+                 .sum();
+    }
     return sum;
   }
 
@@ -97,21 +121,10 @@ class Patch {
     return cloud_.sigma_m.empty() ? sigma_m : cloud_.sigma_m[point];
   }
 
-  Eigen::Vector2d windows_apart(std::size_t i, std::size_t j) const {
-    return (common_.in_windows[points_[i].point] - common_.in_windows[points_[j].point]).cwiseAbs();
-  }
-
-  // Of one scan and within a window's rows.
-  bool may_share(std::size_t i, std::size_t j) const {
-    return scan_of(points_[i].point) == scan_of(points_[j].point) && windows_apart(i, j).x() < 1;
-  }
-
-  double correlation(std::size_t i, std::size_t j) const {
-    return (1 - windows_apart(i, j).array()).max(0).prod();
-  }
-
+  // Rounding takes what a covariance leaves out below zero.
   double own(const Lever& lever) const {
-    return lever.second.dot(common_.poses.scans[lever.first]->covariance * lever.second);
+    const Matrix6& covariance = common_.poses.scans[lever.first]->covariance;
+    return std::max(0.0, lever.second.dot(covariance * lever.second));
   }
 
   // Of scans that no couple ties it is not known: at most the root of both variances' product.
@@ -144,9 +157,11 @@ CommonErrors common_errors(std::span<const Scan> scans, StatedPoses poses) {
     shared |= placed && (scan.noise_window.rows > 1 || scan.noise_window.columns > 1);
     for (std::size_t k = 0; k < scan.cloud.size(); ++k) {
       common.scan.push_back(static_cast<std::uint32_t>(&scan - scans.data()));
-      // One apart where the rays are not known: each has its own.
-      const double row = placed ? scan.ray[k] / scan.grid.columns : double(k),
-                   column = placed ? scan.ray[k] % scan.grid.columns : 0;
+      if (!placed) {  // one apart: each has its own
+        common.in_windows.emplace_back(static_cast<double>(k), 0);
+        continue;
+      }
+      const double row = scan.ray[k] / scan.grid.columns, column = scan.ray[k] % scan.grid.columns;
       common.in_windows.emplace_back(row / scan.noise_window.rows,
                                      column / scan.noise_window.columns);
     }

@@ -31,10 +31,13 @@ class EquivalentKernel {
  public:
   EquivalentKernel() {
     constexpr double step = 0.01;
+    constexpr int steps = static_cast<int>(6 * half_wave / step);
     for (std::size_t i = 0; i < table_.size(); ++i) {
       const double r = static_cast<double>(i) * reach_in_lengths / last;
-      for (double x = step / 2; x < 6 * half_wave; x += step)
+      for (int k = 0; k < steps; ++k) {
+        const double x = (k + 0.5) * step;
         table_[i] += response(x) * x * std::cyl_bessel_j(0, x * r) * step / (2 * std::numbers::pi);
+      }
     }
   }
   double operator()(double lengths) const {
@@ -103,7 +106,7 @@ double SurfaceWeights::trust(std::uint32_t point, std::size_t vertex) const {
 std::vector<WeighedPoint> SurfaceWeights::at(std::size_t vertex) const {
   const double length_m = smoothing_m_[vertex];
   std::vector<Neighbour> found;
-  tree_.within(surface_.vertices[vertex], reach_in_lengths * length_m, found);
+  tree_.within_unsorted(surface_.vertices[vertex], reach_in_lengths * length_m, found);
   if (found.size() < least_neighbours)
     tree_.k_nearest(surface_.vertices[vertex], least_neighbours, found);
   std::vector<WeighedPoint> weights;
@@ -116,7 +119,7 @@ std::vector<WeighedPoint> SurfaceWeights::at(std::size_t vertex) const {
     sum += weights.back().weight;
   }
   // Only far points, or none of its side: it hangs on the nearest.
-  if (!(sum > 0)) return {{found.front().index, 1}};
+  if (!(sum > 0)) return {{std::min_element(found.begin(), found.end(), nearer)->index, 1}};
   for (WeighedPoint& p : weights) p.weight /= sum;
   return weights;
 }
@@ -139,10 +142,10 @@ std::vector<double> SurfaceWeights::taken_m2(std::span<const double> once_m) con
   std::vector<double> taken(once_m.size());
   parallel_for(taken.size(), [&](std::size_t v) {
     std::vector<Neighbour> around;
-    tree.k_nearest(surface_.vertices[v], most_around, around);
+    tree.within(surface_.vertices[v], around_in_lengths * smoothing_m_[v], around);
+    if (around.size() > most_around) around.resize(most_around);
     double once_m2 = 0, twice_m2 = 0, count = 0;
     for (const Neighbour& n : around) {
-      if (n.distance2_m2 > std::pow(around_in_lengths * smoothing_m_[v], 2)) break;
       once_m2 += once_m[n.index] * once_m[n.index];
       twice_m2 += twice_m[n.index] * twice_m[n.index];
       count += 1;

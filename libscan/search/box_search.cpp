@@ -213,11 +213,16 @@ void BoxSearch::k_nearest_in_patch(std::size_t patch, std::size_t k, const Patch
 
 void BoxSearch::within(const Eigen::Vector3d& query_m, double radius_m,
                        std::vector<Neighbour>& found) const {
+  within_unsorted(query_m, radius_m, found);
+  std::sort(found.begin(), found.end(), nearer);
+}
+
+void BoxSearch::within_unsorted(const Eigen::Vector3d& query_m, double radius_m,
+                                std::vector<Neighbour>& found) const {
   WithinCollector collector(radius_m, found);
   if (tree_->points == 0 || !query_m.allFinite() || collector.limit2_m2() < 0) return;
   const LocalQuery query(tree_->frame, query_m);
   offer_all(*tree_, query, tree_query(query, collector.limit2_m2()), collector);
-  collector.finish();
 }
 
 }  // namespace scan

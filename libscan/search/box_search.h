@@ -28,6 +28,11 @@ class BoxSearch {
                  std::uint32_t guess = no_point) const;
   void within(const Eigen::Vector3d& query, double radius_m, std::vector<Neighbour>& found) const;
 
+  // What `within` finds in the tree's own order, which any machine has alike: of a thousand points
+  // sorting takes longer than finding.
+  void within_unsorted(const Eigen::Vector3d& query, double radius_m,
+                       std::vector<Neighbour>& found) const;
+
   // The points fall into patches of neighbours. Calls body(index, found) for each point of one,
   // with what k_nearest finds for it, the point itself being one: a patch's points look into the
   // same leaves, which are found once.

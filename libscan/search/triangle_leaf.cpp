@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 namespace scan {
 namespace {
@@ -17,12 +16,10 @@ Eigen::Vector3f direction_of(const Eigen::Vector3d& vector) {
   return (vector / length).cast<float>();
 }
 
-constexpr double right_angle = 0x1p-22;  // rounding leaves less than 2^-23 of it
-
 }  // namespace
 
 void TriangleLeaf::set(int lane, const std::array<Eigen::Vector3d, 3>& corners) {
-  const auto [a, b, c] = corners;
+  const Eigen::Vector3d &a = corners[0], &b = corners[1], &c = corners[2];
   const Eigen::Vector3f of_plane = direction_of((b - a).cross(c - a));
   const auto along = [&](const Eigen::Vector3f& n) {
     const Eigen::Vector3d direction = n.cast<double>();
@@ -35,9 +32,10 @@ void TriangleLeaf::set(int lane, const std::array<Eigen::Vector3d, 3>& corners) 
   for (int edge = 0; edge < 3; ++edge) {
     const auto k = static_cast<std::size_t>(edge);
     const Eigen::Vector3d way = corners[(k + 1) % 3] - corners[k];
-    Eigen::Vector3f out = direction_of(way.cross(of_plane.cast<double>()));
-    // A needle's normal is what rounding left of it, perhaps along the needle.
-    if (std::abs(out.cast<double>().dot(of_plane.cast<double>())) > right_angle) out.setZero();
+    // A needle's normal is what rounding left of it. It can lie along the needle only where one of
+    // its coordinates is 0 (three roundings would all have to be at their most), and then what
+    // rounding leaves of this product is across it.
+    const Eigen::Vector3f out = direction_of(way.cross(of_plane.cast<double>()));
     reach[edge][lane] = static_cast<float>(along(out).second);
     for (int axis = 0; axis < 3; ++axis) outward[edge][axis][lane] = out[axis];
   }

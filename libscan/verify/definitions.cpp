@@ -4,6 +4,9 @@
 
 #include <string_view>
 #include <utility>
+#include <vector>
+
+#include "libscan/core/nearest_word.h"
 
 namespace scan {
 namespace {
@@ -102,6 +105,16 @@ std::string definition(const std::string& name) {
     text = of_one(name);
   }
   return text;
+}
+
+std::string figure_hint(const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& [known, text] : figures) names.emplace_back(known);
+  for (const auto& [way, what] : distances)
+    for (const auto& [suffix, statistic] : statistics)
+      names.push_back(std::string(way) + std::string(suffix));
+  const std::string nearest = nearest_word(name, names);
+  return nearest.empty() ? nearest : "did you mean '" + nearest + "'?";
 }
 
 }  // namespace scan

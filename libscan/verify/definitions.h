@@ -11,4 +11,7 @@ namespace scan {
 // taken over (sample, denominator) the Measurement says itself.
 std::string definition(const std::string& name);
 
+// For a name that has none: the nearest that has one ("did you mean 'accuracy_rms'?"), or empty.
+std::string figure_hint(const std::string& name);
+
 }  // namespace scan

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <utility>
 
 #include "libscan/core/error.h"
 #include "libscan/verify/definitions.h"
@@ -14,30 +12,10 @@
 namespace scan {
 namespace {
 
-// Fewest insertions, deletions and replacements that turn a into b (Levenshtein 1966).
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 std::string hint_for(const std::string& name, const std::vector<Measurement>& measurements) {
   if (measurements.empty()) return "nothing was measured";
-  if (const std::string known = definition(name); !known.empty())
-    return "it is the " + known + ", which this input does not have";
-  const auto nearest = std::min_element(
-      measurements.begin(), measurements.end(), [&](const Measurement& a, const Measurement& b) {
-        return edit_distance(a.name, name) < edit_distance(b.name, name);
-      });
-  return "did you mean '" + nearest->name + "'?";
+  const std::string known = definition(name);
+  return known.empty() ? figure_hint(name) : "a figure which this input does not have: " + known;
 }
 
 bool holds(double value, const std::string& relation, double limit) {

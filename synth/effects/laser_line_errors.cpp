@@ -171,6 +171,11 @@ double speckle_sigma_px(const Speckle& speckle, double s) {
   return speckle.contrast * std::sqrt(variance * pixel_share(speckle.grain_px.y()));
 }
 
+double speckle_px(const LaserLine& device, double s) {
+  if (device.speckle_contrast == 0) return 0;
+  return 3 * least_squares_on_speckle * speckle_sigma_px(speckle_of(device), s);
+}
+
 double left_out_m(const LaserLine& device, const StripePoint& p, Effect effect) {
   const double s = stripe_sigma_px(p), height_e = p.height_e;
   switch (effect) {
@@ -201,9 +206,7 @@ double left_out_m(const LaserLine& device, const StripePoint& p, Effect effect) 
     case Effect::plane_bow:
       return p.m_per_px * bow_px(device, p);
     case Effect::speckle:
-      return device.speckle_contrast == 0 ? 0
-                                          : p.m_per_px * 3 * least_squares_on_speckle *
-                                                speckle_sigma_px(speckle_of(device), s);
+      return p.m_per_px * speckle_px(device, s);
     case Effect::defocus:
       return p.m_per_px * defocus_px(device, p, s);
     case Effect::miscalibration:

@@ -26,6 +26,10 @@ bool is_transparent(const Material& material) {
   return is_transmissive(material.bsdf) && !scatters(material);
 }
 
+bool has_other_light(const LaserLine& s, const Scene& scene) {
+  return s.ambient_electrons > 0 || (s.electrons_per_w_m2 > 0 && !scene.lights.empty());
+}
+
 // Why a device or scene has nothing of the effect; empty if it has.
 std::string why_absent(const LaserLine& s, const Scene& scene, Effect effect) {
   switch (effect) {
@@ -42,9 +46,7 @@ std::string why_absent(const LaserLine& s, const Scene& scene, Effect effect) {
     case Effect::medium:
       return scene.medium ? "" : "the scene stands in vacuum";
     case Effect::scene_lights:
-      return s.ambient_electrons > 0 || (s.electrons_per_w_m2 > 0 && !scene.lights.empty())
-                 ? ""
-                 : "only the laser shines";
+      return has_other_light(s, scene) ? "" : "only the laser shines";
     case Effect::footprint:
       return s.sub_rays > 1 ? "" : "a pixel is sampled at its centre";
     case Effect::beam_spread:

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <opencv2/calib3d.hpp>
 
 #include "libscan/acquire/board_bundle.h"
@@ -154,6 +155,14 @@ TEST(CalibrateStereo, MakesAPairThatMeasuresAPlaneWhereItIs) {
     pairs.push_back({found_in(truth.left, boards[i], i),
                      found_in(truth.right, truth.right_from_left * boards[i], 100 + i)});
   const RigCalibration found = calibrate_stereo(test_board, pairs);
+  double nearest_m = 1e9, farthest_m = 0;
+  for (const Pose& pose : boards)
+    for (const Eigen::Vector3d& corner : corners_m(test_board)) {
+      nearest_m = std::min(nearest_m, (pose * corner).z());
+      farthest_m = std::max(farthest_m, (pose * corner).z());
+    }
+  EXPECT_NEAR(found.nearest_m, nearest_m, 0.005);  // boards stand 0.3 m off, known to a hundredth
+  EXPECT_NEAR(found.farthest_m, farthest_m, 0.005);
   const auto error = error_of(found.rig);
   const double chi2 = error.dot(sought(found.covariance).ldlt().solve(error));
   RecordProperty("chi2", std::to_string(chi2));

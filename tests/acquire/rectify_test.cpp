@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "libscan/core/error.h"
 #include "tests/acquire/stereo_rig.h"
 
@@ -35,6 +37,22 @@ TEST(Rectify, PutsPointsIntoOneRowAtTheirDepth) {
     EXPECT_GE(disparity_px, c.min_disparity_px);
     EXPECT_LE(disparity_px, c.min_disparity_px + c.disparities_px);
   }
+}
+
+// Both pictures keep their middle columns, the pair its middle row: what was seen is seen still.
+TEST(Rectify, KeepsTheMiddleInTheMiddle) {
+  const StereoRig rig = leaning_rig();
+  const Rectification turned = rectify(rig, 0.2, 0.6);
+  const StereoCalibration& c = turned.calibration;
+  const Eigen::Vector2d middle((c.width_px - 1) / 2.0, (c.height_px - 1) / 2.0);
+  const Eigen::Vector2d left =
+      (turned.rectified_from_left * ray_through(rig.left, middle).value()).hnormalized();
+  const Eigen::Vector2d right =
+      (turned.rectified_from_right * ray_through(rig.right, middle).value()).hnormalized();
+  EXPECT_NEAR(c.focal_px * left.x() + c.cx_px, middle.x(), 1e-9);
+  EXPECT_NEAR(c.focal_px * right.x() + c.cx_px + c.doffs_px, middle.x(), 1e-9);
+  EXPECT_NEAR(c.focal_px * (left.y() + right.y()) / 2 + c.cy_px, middle.y(), 1e-9);
+  EXPECT_GT(std::abs(c.doffs_px), 1);  // or its sign would not show
 }
 
 TEST(Rectify, LeavesAPairThatIsRectifiedAlone) {

@@ -77,6 +77,58 @@ TEST(JointCovariances, OfAChainAddUpFromTheAnchor) {
   EXPECT_LT((*covariances.of_scan[1] - times * link).norm(), 1e-7 * times * link.norm());
 }
 
+// Of a ring of four scans: blocks of the dense sandwich, rows for the first scan. A couple's pulls
+// are longer by what its free scans share.
+TEST(JointCovariances, BetweenScansHaveTheFirstAlongTheRows) {
+  const Ring r = ring();
+  std::vector<JointDetail> details(4);
+  std::vector<std::vector<Vector6>> pulls(4);
+  std::vector<std::vector<Vector3d>> at(4);
+  std::vector<Matrix6> scatter(4, Matrix6::Zero()), of_scan = scatter;
+  RandomStream random(9, 0, 0);
+  for (std::size_t k = 0; k < 4; ++k) {
+    details[k].curvature = r.forms[k].a;
+    for (std::int64_t place = 0; place < 20; ++place) {
+      const Vector6 pull = random_row(random);
+      details[k].pulls.push_back({{place, std::int64_t(k), 0}, pull});
+      scatter[k] += pull * pull.transpose();
+      for (const std::size_t scan : {r.forms[k].source, r.forms[k].target}) {
+        pulls[scan].push_back(scan == r.forms[k].source ? pull : Vector6(-pull));
+        at[scan].emplace_back(double(place), double(k), 0);
+        of_scan[scan] += pull * pull.transpose();
+      }
+    }
+  }
+  std::vector<double> shares(4, 1);  // the anchor's do not count
+  for (std::size_t i = 1; i < 4; ++i) {
+    const Eigen::LLT<Matrix6> spread(of_scan[i]);
+    for (Vector6& pull : pulls[i]) pull = spread.matrixL().solve(pull).eval();
+    shares[i] = std::max(1.0, noise_sharing(pulls[i], at[i], 6));
+  }
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(24, 24);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t i = r.forms[k].source, j = r.forms[k].target;
+    Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(6, 24);
+    difference.middleCols<6>(6 * Eigen::Index(i)).setIdentity();
+    difference.middleCols<6>(6 * Eigen::Index(j)) = -Matrix6::Identity();
+    const double longer =
+        i == 0 || j == 0 ? shares[i] * shares[j] : std::sqrt(shares[i] * shares[j]);
+    all += longer * difference.transpose() * scatter[k] * difference;
+  }
+  const Eigen::MatrixXd inverse = r.a.inverse();
+  const Eigen::MatrixXd expected = inverse * all.bottomRightCorner<18, 18>() * inverse;
+  const auto found = joint_covariances(r.forms, details, frame_of(4), JointBasis(24, 0));
+  ASSERT_EQ(found.between.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const CommonCovariance& couple = found.between[k];
+    EXPECT_EQ(std::pair(couple.first, couple.second), std::pair(k + 1, k + 2));
+    const Matrix6 block = expected.block<6, 6>(6 * Eigen::Index(k), 6 * Eigen::Index(k + 1));
+    EXPECT_LT((couple.covariance - block).norm(), 1e-7 * expected.norm());
+    EXPECT_GT((block - block.transpose()).norm(),
+              1e-3 * expected.norm());  // tells rows from columns
+  }
+}
+
 // With a motion of two scans together withheld: by Lagrange's equations, whose inverse's first
 // block answers pulls with steps.
 TEST(WithholdingSolver, SandwichesWhatIsNotWithheld) {

@@ -236,6 +236,27 @@ TEST(PairFinder, MetricOfPlaneToPlaneMeasuresAcrossThePlanes) {
   EXPECT_NEAR(metric(0, 1), 0, 1e-12);
 }
 
+// Whatever the angle between the planes: the inverse of the sum of Segal et al., section III.B,
+// each s^2 (1 - n n^T) + e^2 n n^T with e = 0.0316 s, times 2 e^2. Conditioned by 1 / 0.0316^2 =
+// 1,000.
+TEST(PairFinder, MetricOfPlaneToPlaneIsTheInverseOfBothCovariances) {
+  const PointCloud cloud = test::bumpy_surface(2000, 8);
+  const Problem problem(cloud, cloud, {.method = IcpMethod::plane_to_plane});
+  RandomStream random(8, 0, 0);
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const Pose pose = test::random_pose(random, 3, 1);
+    const Couple couple{i, 1000 + i};
+    const auto covariance_in_spreads2 = [](const Eigen::Vector3d& n) -> Eigen::Matrix3d {
+      return Eigen::Matrix3d::Identity() + (0.0316 * 0.0316 - 1) * n * n.transpose();
+    };
+    const Eigen::Matrix3d sum =
+        covariance_in_spreads2(problem.target.normals[couple.target]) +
+        covariance_in_spreads2(pose.linear() * problem.source.normals[couple.source]);
+    const Eigen::Matrix3d metric = problem.finder.metric(pose, couple);
+    EXPECT_TRUE((metric * sum / (2 * 0.0316 * 0.0316)).isApprox(Eigen::Matrix3d::Identity(), 1e-9));
+  }
+}
+
 // Sigma of 3 cm across the source and 4 cm across the target: 5 cm together, and the scale of the
 // usual noise is the larger of the two, twice: r^2 = 2 * 16 / 25 d^2.
 TEST(PairFinder, MetricOfPlaneToPlaneFollowsTheScansNoise) {

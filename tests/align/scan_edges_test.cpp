@@ -85,11 +85,14 @@ TEST(GraphEdge, IsAsSureAsTheGuessAlongWhatIsOpen) {
 // that they leave open; one that fixes nothing says nothing.
 TEST(GuessSigma, IsTheMedianAlongWhatPairsFix) {
   const PreparedScans scans = two_scans();
+  // Scans that stand across: what is off is told in the target's frame.
+  const Eigen::Matrix3d turn = exp((Vector6() << 1.5, 0, 0, 0, 0, 0).finished()).linear();
   std::vector<ScanEdge> edges;
   for (const double along_m : {9e-3, 1e-3, 3e-3, 0.5}) {
     ScanEdge edge{.source = 0, .target = 1, .stop = Stop::degenerate};
     edge.centre = scans.clouds[1].origin + arm;
-    edge.target_from_source.translation() = Eigen::Vector3d(0.1, -0.2, along_m);
+    edge.target_from_source_guess.linear() = turn;
+    edge.target_from_source = Eigen::Translation3d(0.1, -0.2, along_m) * Pose(turn);
     if (along_m < 0.1) edge.information(5, 5) = 1e6;
     edges.push_back(edge);
   }

@@ -26,7 +26,8 @@ TEST(Fuzz, RunFolder) {
           "covariance": [[1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],[0,0,0,1,0,0],
           [0,0,0,0,1,0],[0,0,0,0,0,1]], "covariance_centre_m": [0, 0, 0]},
         {"file": "001.ply", "world_from_scan":
-          [[1, 0, 0, 1.5], [0, 1, 0, 0.25], [0, 0, 1, 2], [0, 0, 0, 1]]}],
+          [[1, 0, 0, 1.5], [0, 1, 0, 0.25], [0, 0, 1, 2], [0, 0, 0, 1]],
+          "covariance": null, "covariance_centre_m": null}],
       "covariances_between": [{"scans": [0, 1], "covariance": [[1,0,0,0,0,0],[0,1,0,0,0,0],
           [0,0,1,0,0,0],[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]]}]})");
   fuzz(folder / "alignment.json", [](const auto& path) {

@@ -36,7 +36,7 @@ TEST_P(HardCases, EndInARightSurfaceOrAClearError) {
   const auto method = static_cast<ReconstructMethod>(GetParam());
   if (!with_cgal &&
       (method == ReconstructMethod::poisson || method == ReconstructMethod::delaunay ||
-       method == ReconstructMethod::scale_space))
+       method == ReconstructMethod::scale_space || method == ReconstructMethod::power_crust))
     GTEST_SKIP() << "built with LIBSCAN_WITH_CGAL=OFF";
   for (const HardCase& hard : hard_cases()) {
     SCOPED_TRACE(hard.name);

@@ -68,6 +68,30 @@ TEST(CalibrationJson, ReadsALaserLinePastItsUncertainty) {
   EXPECT_EQ(read.calibration.plane_normal, setup.calibration.plane_normal);
 }
 
+// What only readers of the file see: each figure under its own name.
+TEST(CalibrationJson, NamesEachFigureOfTheUncertainty) {
+  const CameraCalibration one{.camera = camera, .rms_px = 1, .sigma_px = 2};
+  const auto of_camera = calibration_json(one)["uncertainty"];
+  EXPECT_EQ(of_camera["rms_px"], 1);
+  EXPECT_EQ(of_camera["sigma_px"], 2);
+  const RigCalibration rig{.rig = {camera, camera},
+                           .baseline_sigma_m = 3,
+                           .rms_px = 4,
+                           .sigma_px = 5,
+                           .epipolar_rms_px = 6};
+  const auto of_rig = calibration_json(rig, 0.3, 0.9)["uncertainty"];
+  EXPECT_EQ(of_rig["baseline_sigma_m"], 3);
+  EXPECT_EQ(of_rig["rms_px"], 4);
+  EXPECT_EQ(of_rig["sigma_px"], 5);
+  EXPECT_EQ(of_rig["epipolar_rms_px"], 6);
+  const LightPlaneCalibration plane{.rms_m = 7, .misfit = 8, .points = 9};
+  const auto of_plane =
+      calibration_json(LaserLineSetup{{.camera = camera}, {}}, plane)["uncertainty"];
+  EXPECT_EQ(of_plane["rms_m"], 7);
+  EXPECT_EQ(of_plane["misfit"], 8);
+  EXPECT_EQ(of_plane["points"], 9);
+}
+
 TEST(CalibrationJson, NamesWhatIsWrongWithARigOrACovariance) {
   const TemporaryFolder folder;
   RigCalibration found{.rig = {camera, camera}};

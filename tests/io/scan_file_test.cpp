@@ -82,6 +82,9 @@ TEST(ScanFile, PlyOfPointsAloneBringsBackPointsAlone) {
   EXPECT_TRUE(back.misses.empty());
   EXPECT_EQ(back.viewpoint, Eigen::Vector3d(0, 0, 0));
   EXPECT_EQ(back.noise_window.rows, 1u);
+  scan.noise_window = {1, 5};
+  write_scan(folder / "row.ply", scan);
+  EXPECT_EQ(read_scan(folder / "row.ply").noise_window.columns, 5u);
 }
 
 TEST(ScanFile, PcdAndXyzBringBackPointsNormalsAndIntensityToTheBit) {

@@ -68,6 +68,26 @@ TEST(CollapsingMesh, RefusesToPinchATube) {
   EXPECT_FALSE(mesh.may_collapse(6, 7, (9 * tube.vertices[6] + tube.vertices[7]) / 10));
 }
 
+TEST(CollapsingMesh, FlipsAnEdge) {
+  // A parallelogram cut along its long diagonal.
+  CollapsingMesh mesh({{{0, 0, 0}, {2, 0, 0}, {3, 2, 0}, {1, 2, 0}}, {{0, 1, 2}, {0, 2, 3}}});
+  EXPECT_FALSE(mesh.may_flip(0, 1));  // on the rim
+  ASSERT_TRUE(mesh.may_flip(0, 2));
+  mesh.flip(0, 2);
+  EXPECT_EQ(mesh.neighbours(1), (std::vector<std::uint32_t>{0, 2, 3}));
+  EXPECT_EQ(mesh.around(0).size(), 1u);
+  EXPECT_EQ(mesh.around(3).size(), 2u);
+  EXPECT_NEAR(area_m2(mesh.mesh()), 4, 1e-12);
+  EXPECT_EQ(edge_census(mesh.mesh()).misoriented_edges, 0u);
+  EXPECT_FALSE(mesh.may_flip(1, 3));                          // back again: thinner
+  EXPECT_FALSE(CollapsingMesh(octahedron()).may_flip(0, 2));  // it would fold
+  // Of two slivers, unless their other diagonal is an edge already.
+  Mesh line{{{0, 0, 0}, {3, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 0, 3}}};
+  EXPECT_TRUE(CollapsingMesh(line).may_flip(0, 1));
+  line.triangles.push_back({2, 3, 4});
+  EXPECT_FALSE(CollapsingMesh(line).may_flip(0, 1));
+}
+
 TEST(CollapsingMesh, RefusesABridgeBetweenRims) {
   const CollapsingMesh mesh(strip());
   EXPECT_TRUE(mesh.is_on_rim(1));

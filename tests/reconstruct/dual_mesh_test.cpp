@@ -50,6 +50,17 @@ void expect_dual_of(const EdgeCensus& before, const Mesh& dual) {
   EXPECT_EQ(census.used_vertices, dual.vertices.size());
 }
 
+// How many quads are cut along their longer diagonal.
+std::size_t cut_the_long_way(const Mesh& mesh) {
+  std::size_t count = 0;
+  for (std::size_t q = 0; q < mesh.quads; ++q) {
+    const auto& x = mesh.vertices;
+    const Triangle &first = mesh.triangles[2 * q], &second = mesh.triangles[2 * q + 1];
+    count += (x[first[0]] - x[first[2]]).norm() > (x[first[1]] - x[second[2]]).norm();
+  }
+  return count;
+}
+
 TEST(DualMesh, IsOfQuadsAndOfTheSameTopology) {
   for (const int depth : {4, 5, 6})
     for (const auto& field : {UnitField(ball), UnitField(ring)}) {
@@ -61,6 +72,7 @@ TEST(DualMesh, IsOfQuadsAndOfTheSameTopology) {
       // Each root on an edge of the cells has four cells about it.
       EXPECT_EQ(2 * result.surface.quads, result.surface.triangles.size());
       EXPECT_EQ(result.support_m.size(), result.surface.vertices.size());
+      EXPECT_EQ(cut_the_long_way(result.surface), 0u);
     }
 }
 
@@ -72,9 +84,18 @@ TEST(DualMesh, IsManifoldOnARandomField) {
       return std::sin(pitch * u.dot(Eigen::Vector3d(1.3, 2.7, 3.1)));
     });
     const EdgeCensus before = edge_census(result.surface);
-    make_dual(result, somewhere);
+    for (const auto& v : result.surface.vertices) result.standard_error_m.push_back(1 + v[0]);
+    make_dual(result, std::vector(result.surface.vertices));
     expect_dual_of(before, result.surface);
     EXPECT_GT(result.surface.quads, result.surface.triangles.size() / 4);
+    // However the planes of such pieces meet, a vertex stays in its cell, where the piece is.
+    for (const double from_surface : result.support_m)
+      EXPECT_LT(from_surface, std::sqrt(3) * result.finest_cell_m);
+    // So does what it knows; the middle of a polygon knows what a corner of it does.
+    ASSERT_EQ(result.standard_error_m.size(), result.surface.vertices.size());
+    for (std::size_t v = 0; v < result.standard_error_m.size(); ++v)
+      EXPECT_NEAR(result.standard_error_m[v], 1 + result.surface.vertices[v][0],
+                  2 * result.finest_cell_m);
   }
 }
 
@@ -99,6 +120,18 @@ TEST(DualMesh, LiesNearerToASphereThanTheTriangles) {
     make_dual(result, somewhere);
     EXPECT_LT(mean_miss(), of_triangles);
   }
+}
+
+// A turned cube, whose edges the triangles cut off: a vertex in each of their cells is nearer to
+// them.
+TEST(DualMesh, CutsLessOffEdgesThanTheTriangles) {
+  const Eigen::Matrix3d turn = exp((Vector6() << 0.3, 0.5, 0.7, 0, 0, 0).finished()).linear();
+  SurfaceResult result = level_set(5, [&](const Eigen::Vector3d& u) {
+    return (turn * (u - centre)).lpNorm<Eigen::Infinity>() - 0.25;
+  });
+  const double missing = 0.125 - volume_m3(result.surface);
+  make_dual(result, somewhere);
+  EXPECT_LT(std::abs(0.125 - volume_m3(result.surface)), missing);
 }
 
 TEST(DualMesh, EndsWhereTheSurfaceEnds) {
@@ -150,6 +183,26 @@ TEST(DualMesh, KnowsWhatTheSurfaceKnew) {
     EXPECT_NEAR(result.standard_error_m[v], 1 + place[0], result.finest_cell_m);
     EXPECT_NEAR(result.vertex_smoothing_m[v], 2 + place[1], result.finest_cell_m);
   }
+}
+
+// In cells of twice the size pieces of a random field touch again and again: they are split, and
+// what is about a vertex is no quad. Its middle knows what a corner does.
+TEST(DualMesh, GivesMiddlesOfPolygonsWhatACornerKnows) {
+  SurfaceResult result = level_set(5, [](const Eigen::Vector3d& u) {
+    if (u.minCoeff() <= 0 || u.maxCoeff() >= 1) return 1.0;
+    return std::sin(1e4 * u.dot(Eigen::Vector3d(1.3, 2.7, 3.1)));
+  });
+  result.finest_cell_m *= 2;
+  for (const auto& v : result.surface.vertices) result.standard_error_m.push_back(1 + v[0]);
+  make_dual(result, somewhere);
+  ASSERT_EQ(result.standard_error_m.size(), result.surface.vertices.size());
+  std::vector<int> triangles(result.surface.vertices.size(), 0);
+  for (std::size_t t = 2 * result.surface.quads; t < result.surface.triangles.size(); ++t)
+    ++triangles[result.surface.triangles[t][2]];  // a middle comes last
+  EXPECT_GT(std::count_if(triangles.begin(), triangles.end(), [](int n) { return n > 4; }), 100);
+  for (std::size_t v = 0; v < result.standard_error_m.size(); ++v)
+    EXPECT_NEAR(result.standard_error_m[v], 1 + result.surface.vertices[v][0],
+                2 * result.finest_cell_m);
 }
 
 TEST(DualMesh, RefusesSurfacesThatWereNotCutOutOfCells) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -32,6 +33,28 @@ TEST(FollowedSurface, GoesAllRoundFromOneSeed) {
   for (const auto& v : mesh.vertices) EXPECT_NEAR(ball(v), 0, 1e-5);
   // Facets of 1/64 on a radius of 0.3 lose (1/64)^2 / (2 x 0.3^2), 0.14 %.
   EXPECT_NEAR(volume_m3(mesh), 4 * std::numbers::pi / 3 * 0.027, 2e-3 * 0.113);
+}
+
+// The cells about a seed are looked into only where nothing crosses its own and those about it:
+// seeds on the surface cost no value of the field that following from one does not ask for.
+TEST(FollowedSurface, LooksAboutSeedsThatLieOffIt) {
+  std::atomic<int> values = 0;
+  const UnitField counted = [&](const Eigen::Vector3d& u) {
+    ++values;
+    return ball(u);
+  };
+  std::vector<Eigen::Vector3d> seeds{{0.8, 0.5, 0.5}};
+  const Mesh from_one = followed_surface(seeds, 6, counted);
+  const int of_one = values.exchange(0);
+  for (int i = 0; i < 1000; ++i) {  // a spiral
+    const double z = (i + 0.5) / 500 - 1, turn = 2.4 * i, r = std::sqrt(1 - z * z);
+    seeds.push_back(centre + 0.3 * Eigen::Vector3d(r * std::cos(turn), r * std::sin(turn), z));
+  }
+  EXPECT_TRUE(followed_surface(seeds, 6, counted).triangles == from_one.triangles);
+  // Seeds that rounding puts a cell off ask for the corners of their own.
+  EXPECT_LT(values, of_one + 20);
+  const std::vector<Eigen::Vector3d> beside{{0.8 + 1.3 / 64, 0.5, 0.5}};
+  EXPECT_TRUE(followed_surface(beside, 6, ball).triangles == from_one.triangles);
 }
 
 TEST(FollowedSurface, EndsWhereTheFieldIsUnknown) {

@@ -41,7 +41,9 @@ TEST(RangeFusion, IsExactOnAPlane) {
   for (const auto& v : result.surface.vertices)
     EXPECT_LT(std::abs(v[2]), 5.1e-4 * result.finest_cell_m);
   // The rim: a reach of 2.5 spacings, which count up to sqrt(2) as much where half a disc is empty.
-  EXPECT_NEAR(area_m2(result.surface), 4, 8 * 2.5 * 0.02 * std::sqrt(2.0));
+  EXPECT_LT(area_m2(result.surface), 4 + 8 * 2.5 * 0.02 * std::sqrt(2.0));
+  EXPECT_GT(area_m2(result.surface), 4);  // nothing that was seen is missing
+  RecordProperty("area", std::to_string(area_m2(result.surface)));
   EXPECT_GT(vertex_normals(result.surface)[result.surface.vertices.size() / 2][2], 0.99);
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "libscan/core/error.h"
+#include "libscan/reconstruct/ssd.h"
 #include "tests/reconstruct/shapes.h"
 
 namespace scan {
@@ -86,6 +87,18 @@ TEST(Rbf, HasSmallFacetsWhereNoLevelHasAnythingToAdd) {
   const double worst = mean_distance(
       result.surface, [](const Eigen::Vector3d& x) { return std::abs(x.norm() - 1); });
   EXPECT_LT(worst, 5.2e-4);
+}
+
+// One spacing and one and a half sigma, at most halved: finer ones would cost four times as many
+// values of the function and show noise.
+TEST(Rbf, HasFacetsAsWideAsThoseOfSsd) {
+  for (const std::size_t count : {1500, 2000, 3000}) {
+    PointCloud cloud = torus_cloud(count);
+    RandomStream random(6, 0, 0);
+    for (auto& x : cloud.points)
+      for (double& along : x) along += 0.03 * random.normal();
+    EXPECT_DOUBLE_EQ(rbf(cloud).finest_cell_m, ssd(cloud).finest_cell_m) << count;
+  }
 }
 
 // Sampled up to 200 times as densely on one end; 2755 samples stay. Some lie 0.3 m apart where

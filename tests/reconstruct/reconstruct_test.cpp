@@ -21,7 +21,7 @@ constexpr bool with_cgal = false;
 bool is_built(ReconstructMethod method) {
   return with_cgal ||
          (method != ReconstructMethod::poisson && method != ReconstructMethod::delaunay &&
-          method != ReconstructMethod::scale_space);
+          method != ReconstructMethod::scale_space && method != ReconstructMethod::power_crust);
 }
 
 class EachMethod : public testing::TestWithParam<std::size_t> {

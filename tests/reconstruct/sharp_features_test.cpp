@@ -60,6 +60,19 @@ TEST(SharpFeatures, LeaveASmoothSurfaceAlone) {
   EXPECT_TRUE(sharp.surface.triangles == plain.surface.triangles);
 }
 
+// A height of less than a thousandth of the longest side, or none: vertices that met on an edge.
+TEST(SharpFeatures, LeaveNoSlivers) {
+  const Mesh mesh = surface_of(cube_cloud(3000), true).surface;
+  for (const Triangle& t : mesh.triangles) {
+    double longest2 = 0;
+    for (int k = 0; k < 3; ++k)
+      longest2 =
+          std::max(longest2, (mesh.vertices[t[k]] - mesh.vertices[t[(k + 1) % 3]]).squaredNorm());
+    ASSERT_GT(2 * area_vector(mesh, t).norm(), 1e-3 * longest2);
+  }
+  EXPECT_EQ(edge_census(mesh).non_manifold_edges, 0u);
+}
+
 TEST(SharpFeatures, AreTheSameForAnyNumberOfThreads) {
   const PointCloud cloud = cube_cloud(3000);
   const SurfaceResult many = surface_of(cloud, true);

@@ -87,7 +87,7 @@ TEST(SsdAccuracy, DoesNotFollowStrayPointsOfAScanner) {
   const double ratio =
       mean_distance(strayed, torus_distance) / mean_distance(clean, torus_distance);
   RecordProperty("ratio", std::to_string(ratio));
-  EXPECT_LT(ratio, 1.5);  // a quarter of what trust in them would add
+  EXPECT_LT(ratio, 1.5);  // a quarter of what trust in them adds: 3.16 with it, 1.36 without
 }
 
 TEST(SsdFit, TrustsAllButSamplesFarOff) {

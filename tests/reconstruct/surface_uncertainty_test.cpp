@@ -52,6 +52,9 @@ TEST(SurfaceVariances, OfPosesCountWhatTheyShare) {
   EXPECT_NEAR(at_middle(cloud, common).poses_m2, 2, 1e-9);
   common.poses.between[0].covariance(5, 5) = -4;  // against one another
   EXPECT_NEAR(at_middle(cloud, common).poses_m2, 0, 1e-9);
+  common.poses.scans.push_back(common.poses.scans[0]);  // of a third scan that has no points here
+  common.poses.between[0].second = 2;
+  EXPECT_NEAR(at_middle(cloud, common).poses_m2, 4, 1e-9);  // not of these two
   common.poses.scans[0].reset();
   EXPECT_EQ(at_middle(cloud, common).poses_m2, std::numeric_limits<double>::infinity());
 }
@@ -91,6 +94,15 @@ TEST(SurfaceVariances, OfPosesAreThoseOfDrawnMotions) {
   EXPECT_NEAR(squares / stated, 1, 0.07);
 }
 
+// A covariance that leaves out what moves the surface here may say less than nothing of it.
+TEST(SurfaceVariances, OfPosesAreNumbersDespiteRounding) {
+  const PointCloud cloud = seen_twice();
+  CommonErrors common = of_two_scans(cloud);
+  common.poses.scans[0]->covariance(5, 5) = -1e-20;
+  common.poses.scans[1]->covariance(5, 5) = 4;
+  EXPECT_NEAR(at_middle(cloud, common).poses_m2, 1, 1e-9);
+}
+
 // Means over windows of white noise, drawn, against the stated variance: of 2000 draws three
 // standard deviations of a variance are 9.5 %. Told nothing of windows it is that of points of
 // their own.
@@ -120,9 +132,26 @@ TEST(SurfaceVariances, OfSharedNoiseAreThoseOfDrawnWindows) {
     squares += sum * sum / draws;
   }
   EXPECT_NEAR(stated / squares, 1, 0.095);
-  common.in_windows.clear();
-  EXPECT_NEAR(at_middle(cloud, common).points_m2, own, 1e-12 * own);
+  EXPECT_NEAR(surface_variances(square, cloud, {})[v].points_m2, own, 1e-12 * own);
   EXPECT_GT(stated, 5 * own);
+}
+
+// Two scans that saw the same, half of the weight each: what the points of one share is halved, and
+// nothing is shared between them, wherever their windows begin and end.
+TEST(SurfaceVariances, OfSharedNoiseAreEachScansOwn) {
+  const PointCloud once = square_points(40, 0.5), twice = seen_twice();
+  CommonErrors one, two = of_two_scans(twice);
+  for (const int rows : {5, 100}) {  // in the end all are within one window's rows
+    one.in_windows.clear();
+    for (int i = 0; i < 1600; ++i)
+      one.in_windows.emplace_back(double(i / 40) / rows, double(i % 40) / 5);
+    two.in_windows = one.in_windows;
+    two.in_windows.insert(two.in_windows.end(), one.in_windows.begin(), one.in_windows.end());
+    PointCloud cloud = once;
+    cloud.sigma_m.assign(cloud.size(), 1e-3);
+    const double of_one = at_middle(cloud, one).points_m2;
+    EXPECT_NEAR(at_middle(twice, two).points_m2, of_one / 2, 1e-9 * of_one) << rows;
+  }
 }
 
 // Noise along the ray moves a surface that it meets at 60 degrees by half.
@@ -132,6 +161,12 @@ TEST(SurfaceVariances, OfPointsAreTakenAcrossTheSurface) {
   const Eigen::Vector3d ray(std::sqrt(0.75), 0, 0.5);
   cloud.covariances.assign(cloud.size(), 1e-6 * ray * ray.transpose());
   EXPECT_NEAR(at_middle(cloud, {}).points_m2, along / 4, 1e-9 * along);
+  cloud.covariances.clear();
+  cloud.sigma_m.clear();  // then each point errs by what the surface says of all
+  SurfaceResult square = smoothed_square(side, 1);
+  square.sigma_m = 2e-3;
+  EXPECT_NEAR(surface_variances(square, cloud, {})[middle_of(side)].points_m2, 4 * along,
+              1e-9 * along);
 }
 
 // Rays of a grid of ten columns in windows of 2 rows and 5 columns; a scan that does not know its
@@ -149,6 +184,8 @@ TEST(CommonErrors, PlaceRaysInTheirWindows) {
   EXPECT_EQ(common.in_windows[0], Eigen::Vector2d(0, 7.0 / 5));
   EXPECT_EQ(common.in_windows[1], Eigen::Vector2d(3.0 / 2, 1.0 / 5));
   EXPECT_GE(common.in_windows[4].x() - common.in_windows[3].x(), 1);
+  scans[1].noise_window = {4, 4};  // which tells nothing without rays
+  EXPECT_EQ(common_errors(scans, {}).in_windows, common.in_windows);
 }
 
 TEST(SurfaceVariances, RefuseListsThatDoNotFit) {
@@ -167,12 +204,14 @@ TEST(StandardErrors, SpareBrokenPointsAndOtherMethods) {
   PointCloud cloud = seen_twice();
   CommonErrors common = of_two_scans(cloud);
   common.poses.scans[1]->covariance = 1e-6 * Matrix6::Identity();
+  for (std::size_t i = 0; i < cloud.size(); ++i) common.in_windows.emplace_back(0.2 * double(i), 0);
   SurfaceResult whole = smoothed_square(side, 1), broken = whole, other = whole;
   add_standard_errors(whole, cloud, common);
   cloud.points.insert(cloud.points.begin(), {0, 0, std::nan("")});
   cloud.normals.insert(cloud.normals.begin(), Eigen::Vector3d::UnitZ());
   cloud.sigma_m.insert(cloud.sigma_m.begin(), 1);
   common.scan.insert(common.scan.begin(), 1);
+  common.in_windows.insert(common.in_windows.begin(), {7, 7});
   add_standard_errors(broken, cloud, common);
   EXPECT_EQ(broken.standard_error_m, whole.standard_error_m);
   other.vertex_smoothing_m.clear();

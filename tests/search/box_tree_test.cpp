@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "libscan/core/parallel.h"
@@ -83,6 +84,25 @@ double sixtieth_distance2_m2(const BruteForce& oracle, const Eigen::Vector3d& qu
   std::vector<Neighbour> found;
   oracle.k_nearest(query, 60, found);
   return found.back().distance2_m2;
+}
+
+// Its order is that of the walk, which the next test holds.
+TEST(BoxSearch, FindsTheSamePointsUnsorted) {
+  for (const auto& [name, points] : hard_clouds(2000)) {
+    if (finite(points).empty()) continue;
+    const BruteForce oracle(points);
+    for (const Build build : builds) {
+      const BoxSearch search(build(points));
+      for (const Eigen::Vector3d& query : queries_for(finite(points))) {
+        const double radius_m = std::sqrt(sixtieth_distance2_m2(oracle, query));
+        std::vector<Neighbour> sorted, unsorted;
+        search.within(query, radius_m, sorted);
+        search.within_unsorted(query, radius_m, unsorted);
+        std::sort(unsorted.begin(), unsorted.end(), nearer);
+        EXPECT_EQ(unsorted, sorted) << name;
+      }
+    }
+  }
 }
 
 TEST(TreeKernels, ReturnTheSameBytesForEachInstructionSet) {

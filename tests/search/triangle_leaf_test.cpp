@@ -82,6 +82,28 @@ Case some_case(std::uint64_t number) {
   return {corners, query, nearest, (query - nearest).norm(), local};
 }
 
+// Needles whose corners' rounding leaves a normal along them, one in a hundred of these: the
+// half-spaces of their edges must be at right angles to it all the same.
+TEST(TriangleLeaf, BoundsDistancesToNeedlesAlongTheirNormal) {
+  int along = 0;
+  for (std::uint64_t number = 0; number < 100'000; ++number) {
+    RandomStream random(43, 0, number);
+    const double off = std::pow(2, -20 - 30 * random.uniform()), share = random.uniform(),
+                 at = random.uniform();
+    const Eigen::Vector3d jitter = uniform_in_box(random, off), away = uniform_in_box(random, 0.3);
+    const Eigen::Vector3d way = 0.25 * (Eigen::Vector3d(1, 1, 0) + jitter);
+    const Corners corners = {Eigen::Vector3d::Zero(), way, share * way};
+    const Eigen::Vector3d query = 2 * at * way + away, normal = way.cross(share * way);
+    along += std::abs(normal.dot(way)) > 0.999 * normal.norm() * way.norm() && normal.norm() > 0;
+    LocalQuery local(LocalFrame{}, query);
+    local.slack *= TriangleLeaf::leaf_slack;
+    const Eigen::Vector3d nearest =
+        closest_point_on_triangle(query, corners[0], corners[1], corners[2]);
+    ASSERT_LE(bound2_of(corners, query), local.limit2((query - nearest).squaredNorm())) << number;
+  }
+  EXPECT_GT(along, 500);
+}
+
 // As the search asks: a bound above the limit of the true distance would pass the triangle by.
 TEST(TriangleLeaf, BoundsDistancesFromBelow) {
   for (std::uint64_t number = 0; number < 300'000; ++number) {

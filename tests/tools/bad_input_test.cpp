@@ -102,7 +102,11 @@ TEST(BadInput, MissingFilesAndFoldersAreNamed) {
   const Folder folder;
   const std::string missing = (folder / "missing.ply").string();
   expect_failure(run_scan({"info", missing}), input, "missing.ply");
-  expect_failure(run_scan({"info", folder.path().string()}), input, folder.path().string());
+  expect_failure(run_scan({"info", folder.path().string()}), input, "is a folder");
+  expect_failure(run_scan({"acquire", "stereo", missing, missing, (folder / "p.ply").string()}),
+                 usage, "--calibration: is missing");
+  expect_failure(run_scan({"reconstruct", missing, (folder / "s.stl").string(), "--quads"}), usage,
+                 "--quads");
   expect_failure(run_scan({"run", (folder / "missing.json").string(), (folder / "run").string()}),
                  input, "missing.json");
   EXPECT_TRUE(files_below(folder.path()).empty());

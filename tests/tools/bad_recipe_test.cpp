@@ -84,6 +84,10 @@ INSTANTIATE_TEST_SUITE_P(
         Slip{"\"count\": 8", "\"count\": 0", "count"},
         Slip{"\"depth\": 4", "\"depth\": 40", "depth"},
         Slip{"\"method\": \"ssd\"", "\"method\": \"sdd\"", "did you mean 'ssd'"},
+        Slip{"\"libscan\": 1,",
+             "\"libscan\": 1, \"limits\": [{ \"name\": \"acuracy_rms\", \"at_most_mm\": 1, "
+             "\"reason\": \"why\" }],",
+             "limits/0/name: 'acuracy_rms' is no figure of a verdict (did you mean 'accuracy_rms'"},
         Slip{"\"libscan\": 1", "\"libscan\": 2", "version 1"},
         Slip{"\"libscan\": 1,", "\"libscan\": 1", "not valid JSON"}));
 

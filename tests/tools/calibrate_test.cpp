@@ -147,6 +147,7 @@ TEST(Calibrate, NamesWhatPicturesShowAndWhatTheyLeaveOpen) {
   EXPECT_EQ(calibrate("camera", {flat, out}, {"--square", "20mm", "--board", "9by6"}).exit_code, 2);
   EXPECT_EQ(calibrate("camera", {flat, out}, {}).exit_code, 2);
   EXPECT_EQ(calibrate("stereo", {flat, out}).exit_code, 2);
+  EXPECT_EQ(calibrate("camera", {flat, (folder / "camera.txt").string()}).exit_code, 2);
   EXPECT_EQ(calibrate("light-plane", {flat, flat, out}).exit_code, 2);
 }
 

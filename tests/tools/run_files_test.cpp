@@ -40,6 +40,21 @@ TEST(RunFiles, StatedPosesComeBackToTheBit) {
   EXPECT_FALSE(stated[2].has_value());
 }
 
+// As they are looked up, in whatever order a file holds them.
+TEST(RunFiles, CouplesComeBackInOrder) {
+  const test::Folder folder;
+  MultiviewResult result;
+  result.scans.resize(3);
+  result.covariances_between = {{1, 2, Matrix6::Identity()}, {0, 2, 2 * Matrix6::Identity()}};
+  const std::vector<std::string> files{"a", "b", "c"};
+  write_json(folder / "alignment.json", alignment_json(files, result, {}));
+  const StatedPoses stated = read_run_stated_poses(folder.path());
+  ASSERT_EQ(stated.between.size(), 2u);
+  EXPECT_EQ(stated.between[0].first, 0u);
+  EXPECT_EQ(stated.between[0].covariance, 2 * Matrix6::Identity());
+  EXPECT_EQ(stated.between[1].first, 1u);
+}
+
 TEST(RunFiles, WithoutAnAlignmentNothingIsStated) {
   const test::Folder folder;
   EXPECT_TRUE(read_run_stated_poses(folder.path()).scans.empty());

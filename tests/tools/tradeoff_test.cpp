@@ -148,7 +148,7 @@ TEST(Tradeoff, NamesWhatIsWrongWithItsRecipe) {
             std::string::npos);
   EXPECT_NE(said(R"({"vary": [{"key": "reconstruct/depth", "values": [3]}], "seeds": 1,
                      "error": "accuracy_rmz"})")
-                .find("accuracy_rmz"),
+                .find("did you mean 'accuracy_rms'"),
             std::string::npos);
   EXPECT_NE(said(R"({"vary": [{"key": "threads", "values": [1, 100000]}]})").find("100000"),
             std::string::npos);

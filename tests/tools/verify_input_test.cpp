@@ -11,7 +11,7 @@
 namespace scan::test {
 namespace {
 
-constexpr int failed = 1, input = 3;
+constexpr int failed = 1, usage = 2, input = 3;
 
 // A cube of the given edge with a corner at (x, 0, 0); `extra` are further lines of faces.
 std::string cube_off(double edge, double x, const std::string& extra = "", int extra_faces = 0) {
@@ -213,6 +213,46 @@ TEST(VerifyInput, ACloudOfNothingIsRefused) {
       {"verify", (folder / "cloud.xyz").string(), "--truth", (folder / "truth.off").string()});
   EXPECT_EQ(outcome.exit_code, input);
   EXPECT_TRUE(says(outcome, "cloud.xyz")) << outcome.err;
+}
+
+// Figures alone are no verdict.
+TEST(VerifyInput, WithoutLimitsThereIsNoVerdict) {
+  const Folder folder;
+  spill(folder / "truth.off", cube_off(1, 0));
+  const std::string truth = (folder / "truth.off").string();
+  const Outcome figures = run_scan({"verify", truth, "--truth", truth});
+  EXPECT_EQ(figures.exit_code, 0) << figures.err;
+  EXPECT_EQ(figures.out.find("PASS"), std::string::npos);
+  EXPECT_NE(figures.out.find("no limits, no verdict"), std::string::npos) << figures.out;
+  spill(folder / "limits.json",
+        R"([{"name": "accuracy_rms", "at_most_mm": 1, "reason": "the process"}])");
+  const Outcome judged =
+      run_scan({"verify", truth, "--truth", truth, "--limits", (folder / "limits.json").string()});
+  EXPECT_NE(judged.out.find("PASS"), std::string::npos) << judged.out;
+}
+
+// What a recipe says is not said a second time, and a cloud has no picture.
+TEST(VerifyInput, OptionsThatWouldBePassedOverAreRefused) {
+  const Folder folder;
+  std::filesystem::create_directory(folder / "run");
+  spill(folder / "truth.off", cube_off(1, 0));
+  spill(folder / "cloud.xyz", "0 0 0\n1 0 0\n");
+  const std::string run = (folder / "run").string(), truth = (folder / "truth.off").string(),
+                    cloud = (folder / "cloud.xyz").string();
+  const std::vector<std::vector<std::string>> unused = {
+      {run, "--limits", "limits.json"},
+      {run, "--truth", truth},
+      {run, "--threshold", "1mm"},
+      {run, "--picture", "p.png"},
+      {truth, "--truth", truth, "--doffs", "3"},
+      {cloud, "--truth", truth, "--picture", "p.png"}};
+  for (std::vector<std::string> words : unused) {
+    const std::string option = words[words.size() - 2];
+    words.insert(words.begin(), "verify");
+    const Outcome outcome = run_scan(words);
+    EXPECT_EQ(outcome.exit_code, usage) << option << outcome.err;
+    EXPECT_TRUE(says(outcome, option)) << outcome.err;
+  }
 }
 
 TEST(VerifyInput, ALimitOnWhatWasNotMeasuredIsAnError) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // Acceptance figures of a laser line whose errors are known.
+#include <array>
 #include <numbers>
 
 #include "tests/validation/acceptance_figures.h"
@@ -91,6 +92,84 @@ TEST(Acceptance, ATiltedLightPlaneShowsInTheStep) {
   EXPECT_GT(predicted_m, 1e-4);
   const double tilted_m = step_error_m({Effect::footprint, Effect::miscalibration});
   EXPECT_NEAR(tilted_m - step_error_m(no_effects), predicted_m, 1e-6);
+}
+
+// Two balls, one at either side of x = 0, and the spacing error of their points.
+constexpr double ball_radius_m = 4e-3;
+
+LaserLine ball_scanner() {
+  LaserLine device = laser_line();
+  device.camera.height_px = 30;
+  device.camera.cy_px = 14.5;
+  device.sensor = {.gain_e_per_dn = 0.5, .offset_dn = 8, .bits = 16};
+  return device;
+}
+
+double spacing_error_m(const LaserLine& device, const std::array<Eigen::Vector3d, 2>& centres_m,
+                       const std::function<Pose(const Pose&)>& believed_step) {
+  Scene scene{.objects = {}, .materials = {grey}};
+  for (const Eigen::Vector3d& centre_m : centres_m)
+    scene.objects.push_back({.name = "ball",
+                             .world_from_object = make_pose(Eigen::Matrix3d::Identity(), centre_m),
+                             .geometry = Shape(SphereShape{ball_radius_m}),
+                             .material = 0});
+  RawFrames frames = render(device, RayCaster(scene), Pose::Identity(), {}, no_effects).frames;
+  for (Pose& step : std::get<StripeImages>(frames).scanner_from_camera) step = believed_step(step);
+  BallBar bar;
+  for (const Eigen::Vector3d& x : acquire(frames).cloud.points)
+    (x.x() < 0 ? bar.first : bar.second).push_back(x);
+  EXPECT_GT(bar.first.size(), 60u);
+  EXPECT_GT(bar.second.size(), 60u);
+  return value(spacing_errors(std::vector{bar}, (centres_m[1] - centres_m[0]).norm()),
+               "sphere_spacing_error");
+}
+
+// A stage whose steps are 100 ppm longer than its encoder says: what lies a length apart along it
+// is seen as much farther apart. The balls lie a whole number of steps apart, so the head sees both
+// alike, and whatever bends one bends the other. Images are the same; fits are good to 1e-9 of
+// their size.
+TEST(Acceptance, AStageOfLongStepsShowsInTheSpacing) {
+  LaserLine device = ball_scanner();
+  device.step_m = 1e-3;
+  device.steps = 41;
+  const double length_m = 20 * device.step_m;
+  const std::array<Eigen::Vector3d, 2> centres_m = {Eigen::Vector3d(-length_m / 2, 0, 0.18),
+                                                    Eigen::Vector3d(length_m / 2, 0, 0.18)};
+  const auto seen_m = [&](double factor) {
+    return spacing_error_m(device, centres_m, [&](const Pose& step) {
+      return make_pose(step.linear(), factor * step.translation());
+    });
+  };
+  EXPECT_NEAR(seen_m(1.0001) - seen_m(1), 1e-4 * length_m, 1e-10);
+}
+
+// A turntable that turns 100 ppm farther than its encoder says: balls at the distance R from the
+// axis, an angle D apart, are seen 2 R sin(D / 2) apart with D 100 ppm larger. Both are as much
+// wider along their way, which moves a fitted centre towards the axis by less than 1e-4 of the
+// radius r, the largest move of a point, and so the spacing by 2e-4 r sin(D / 2).
+TEST(Acceptance, ATurntableThatTurnsTooFarShowsInTheSpacing) {
+  LaserLine device = ball_scanner();
+  device.turn_rad = 2 * std::numbers::pi / 180;
+  device.turn_centre_m = {0, 0, 0.22};
+  device.steps = 51;
+  const double axis_m = 0.04, apart_rad = 30 * device.turn_rad;
+  const auto at = [&](double angle_rad) -> Eigen::Vector3d {
+    return device.turn_centre_m +
+           axis_m * Eigen::Vector3d(std::sin(angle_rad), 0, -std::cos(angle_rad));
+  };
+  const std::array<Eigen::Vector3d, 2> centres_m = {at(-apart_rad / 2), at(apart_rad / 2)};
+  const auto seen_m = [&](double factor) {
+    return spacing_error_m(device, centres_m, [&](const Pose& step) {
+      Eigen::AngleAxisd turn(step.linear());
+      turn.angle() *= factor;
+      const Eigen::Matrix3d turned = turn.toRotationMatrix();
+      return make_pose(turned, device.turn_centre_m - turned * device.turn_centre_m);
+    });
+  };
+  const double predicted_m =
+      2 * axis_m * (std::sin(1.0001 * apart_rad / 2) - std::sin(apart_rad / 2));
+  EXPECT_NEAR(seen_m(1.0001) - seen_m(1), predicted_m,
+              2e-4 * ball_radius_m * std::sin(apart_rad / 2));
 }
 
 }  // namespace

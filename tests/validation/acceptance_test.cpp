@@ -163,6 +163,36 @@ TEST(Acceptance, AFastClockLengthensEveryLengthOfALidar) {
   EXPECT_NEAR(fast.size_m - ideal.size_m, 1e-4 * bench().ball_diameter_m, 1e-8);
 }
 
+// An encoder that shows 100 ppm too much turns every ray as much farther about the axis (y). Balls
+// at the distance d from it, to either side by the angle a, are seen 2 d sin(a) apart with a 100
+// ppm larger. Both are as much wider along that way, which moves a fitted centre along the sight by
+// less than 1e-4 of the radius, the largest move of a point.
+TEST(Acceptance, ALongEncoderLengthensWhatALidarTurnsOver) {
+  const double length_m = bench().bar_length_m, depth_m = bench().centre_m.z();
+  Scene scene{.objects = {}, .materials = {grey}};
+  for (const double side : {-0.5, 0.5})
+    scene.objects.push_back(
+        {.name = "ball",
+         .world_from_object = make_pose(Eigen::Matrix3d::Identity(), {side * length_m, 0, depth_m}),
+         .geometry = Shape(SphereShape{bench().ball_diameter_m / 2}),
+         .material = 0});
+  const RayCaster caster(scene);
+  const auto truth = true_rays(pulsed_lidar(), caster, Pose::Identity());
+  const auto spacing_m = [&](double factor) {
+    RawFrames frames = render(pulsed_lidar(), caster, Pose::Identity(), {}, no_effects).frames;
+    for (Eigen::Vector3d& way : std::get<Waveforms>(frames).directions)
+      way =
+          Eigen::AngleAxisd((factor - 1) * std::atan2(way.x(), way.z()), Eigen::Vector3d::UnitY()) *
+          way;
+    return bar_figures(acquire(frames), truth, bench()).spacing_m;
+  };
+  const double angle_rad = std::atan2(length_m / 2, depth_m),
+               away_m = std::hypot(length_m / 2, depth_m);
+  EXPECT_NEAR(spacing_m(1.0001) - spacing_m(1),
+              2 * away_m * (std::sin(1.0001 * angle_rad) - std::sin(angle_rad)),
+              1e-4 * bench().ball_diameter_m * std::sin(angle_rad));
+}
+
 StereoPair stereo_pair() {
   StereoPair pair;
   pair.calibration = {.width_px = 320,

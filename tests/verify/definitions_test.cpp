@@ -91,5 +91,11 @@ TEST(Definition, OfAnUnknownNameIsEmpty) {
   EXPECT_EQ(definition("accuracy_repeatability"), "");
 }
 
+TEST(Definition, OfASlipIsHintedAt) {
+  EXPECT_EQ(figure_hint("acuracy_p95"), "did you mean 'accuracy_p95'?");
+  EXPECT_EQ(figure_hint("pose_eror_rms"), "did you mean 'pose_error_rms'?");
+  EXPECT_EQ(figure_hint("beauty"), "");
+}
+
 }  // namespace
 }  // namespace scan

@@ -241,6 +241,10 @@ test('on paper the picture stands in and every part is there', async () => {
   assert.strictEqual(await page.isVisible('#canvas'), false);
   assert.strictEqual(await page.isVisible('#stage img'), true);
   assert.strictEqual(await page.isVisible('nav'), false);
+  // A4 less 1 cm on either side; what is wider would be cut.
+  await page.setViewportSize({width: 718, height: 700});
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 718);
+  await page.setViewportSize({width: 800, height: 700});
   const pdf = (await page.pdf({format: 'A4'})).toString('latin1');
   assert.ok(pdf.startsWith('%PDF'));
   const pages = pdf.match(/\/Type\s*\/Page\b/g) || [];

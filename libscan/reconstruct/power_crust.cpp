@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "libscan/reconstruct/power_crust.h"
+
+#include "libscan/core/error.h"
+#ifdef LIBSCAN_WITH_CGAL
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "libscan/core/median.h"
+#include "libscan/core/parallel.h"
+#include "libscan/reconstruct/collapsing_mesh.h"
+#include "libscan/reconstruct/noise.h"
+#include "libscan/reconstruct/polar_balls.h"
+#include "libscan/reconstruct/support.h"
+#include "libscan/search/neighbour_search.h"
+#endif
+
+namespace scan {
+
+#ifdef LIBSCAN_WITH_CGAL
+namespace {
+
+// Balls among points that scatter by sigma about a surface are held by points on either side of it,
+// nearly all of which lie within twice sigma.
+constexpr double least_radius_sigmas = 4;
+constexpr std::size_t fewest_for_sigma = 16;  // estimate_sigma()
+// Of a corner's equations: what rounding has made of equal rows is below 1e-15 times the balls'
+// distances by the spacing.
+constexpr double least_singular_share = 1e-6;
+constexpr double short_edge_spacings = 0.1;
+
+double scatter_of(const PointCloud& cloud) {
+  if (!cloud.sigma_m.empty()) return median(cloud.sigma_m);
+  return cloud.size() < fewest_for_sigma ? 0 : estimate_sigma(cloud.points);
+}
+
+// Where four balls have equal power; where rounding leaves that open, along planes that coincide,
+// the place nearest to a point that one of the balls touches.
+Eigen::Vector3d power_centre(const std::array<std::uint32_t, 4>& corner, const PolarBalls& polar) {
+  const Ball& first = polar.balls[corner[0]];
+  Eigen::Matrix3d rows;
+  Eigen::Vector3d right;
+  for (int k = 0; k < 3; ++k) {
+    const Ball& other = polar.balls[corner[k + 1]];
+    const Eigen::Vector3d apart = other.centre - first.centre;
+    const double length = apart.norm();
+    rows.row(k) = apart / length;
+    right[k] = (apart.squaredNorm() - other.radius * other.radius + first.radius * first.radius) /
+               (2 * length);
+  }
+  Eigen::JacobiSVD<Eigen::Matrix3d> svd(rows, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  svd.setThreshold(least_singular_share);
+  Eigen::Vector3d least = Eigen::Vector3d::Constant(unlimited_m), place = least;
+  for (const std::uint32_t ball : corner) {
+    const Eigen::Vector3d near = polar.touched[ball] - first.centre;
+    const Eigen::Vector3d step = svd.solve(right - rows * near);
+    if (!(step.squaredNorm() < least.squaredNorm())) continue;
+    least = step;
+    place = polar.touched[ball] + step;
+  }
+  return place;
+}
+
+// The faces between cells inside and cells outside, in triangles. What has no bounds lies outside.
+Mesh crust_of(const PowerDiagram& diagram, const PolarBalls& polar,
+              std::span<const char> is_inside) {
+  const auto inside = [&](std::uint32_t ball) {
+    return is_inside[ball] && !diagram.is_unbounded[ball];
+  };
+  Mesh all{.vertices = std::vector<Eigen::Vector3d>(diagram.corners.size())};
+  for (const PowerFace& face : diagram.faces) {
+    if (inside(face.first) == inside(face.second)) continue;
+    const auto& c = face.corners;
+    for (std::size_t k = 2; k < c.size(); ++k)
+      if (inside(face.first))
+        all.triangles.push_back({c[0], c[k - 1], c[k]});
+      else
+        all.triangles.push_back({c[0], c[k], c[k - 1]});
+  }
+  std::vector<std::uint32_t> corner_of;
+  Mesh crust = kept_triangles(all, std::vector<char>(all.triangles.size(), 1), corner_of);
+  parallel_for(crust.vertices.size(), [&](std::size_t v) {
+    crust.vertices[v] = power_centre(diagram.corners[corner_of[v]], polar);
+  });
+  return crust;
+}
+
+struct Edge {
+  double length_m;
+  std::uint32_t a, b;
+  bool operator<(const Edge& other) const {
+    return std::tie(length_m, a, b) < std::tie(other.length_m, other.a, other.b);
+  }
+};
+
+std::vector<Edge> edges_of(const Mesh& mesh) {
+  std::vector<Edge> edges;
+  for (const Triangle& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k)
+      if (t[k] < t[(k + 1) % 3])
+        edges.push_back(
+            {(mesh.vertices[t[k]] - mesh.vertices[t[(k + 1) % 3]]).norm(), t[k], t[(k + 1) % 3]});
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+// Cells' faces have edges of any length, many of none: the short ones go, the shortest first. What
+// goes makes way for others.
+Mesh without_short_edges(Mesh mesh, double limit_m) {
+  for (std::size_t before = 0; before != mesh.triangles.size();) {
+    before = mesh.triangles.size();
+    CollapsingMesh left(mesh);
+    for (const Edge& edge : edges_of(mesh)) {
+      if (edge.length_m > limit_m) break;
+      if (left.around(edge.a).empty() || left.around(edge.b).empty()) continue;
+      const Eigen::Vector3d middle = (left.at(edge.a) + left.at(edge.b)) / 2;
+      if (left.may_collapse(edge.a, edge.b, middle)) left.collapse(edge.a, edge.b, middle);
+    }
+    mesh = left.mesh();
+  }
+  return mesh;
+}
+
+}  // namespace
+
+SurfaceResult power_crust(const PointCloud& cloud, std::span<const double> spacing_m) {
+  check(cloud);
+  const Stopwatch watch;
+  if (spacing_m.size() != cloud.size())
+    throw Error(Trouble::input, "cloud: " + std::to_string(spacing_m.size()) + " spacings for " +
+                                    std::to_string(cloud.size()) + " points");
+  const std::vector<std::uint32_t> valid = finite_points(cloud);
+  if (valid.size() < 4)
+    throw Error(Trouble::input,
+                "cloud: " + std::to_string(valid.size()) + " finite points, at least 4 needed");
+  PointCloud used = subset(cloud, valid);
+  const Eigen::Vector3d middle = bounds_of(used.points).center();
+  for (auto& x : used.points) x -= middle;  // a large offset would cost the centres their digits
+  std::vector<double> used_spacing_m;
+  for (const std::uint32_t i : valid) used_spacing_m.push_back(spacing_m[i]);
+  SurfaceResult result;
+  result.sigma_m = scatter_of(used);
+  PolarBalls polar = polar_balls(used.points, used_spacing_m, least_radius_sigmas * result.sigma_m);
+  const PowerDiagram diagram = power_diagram(polar.balls);
+  std::vector<PolarTie> ties = std::move(polar.opposites);
+  for (const PowerFace& face : diagram.faces)
+    ties.push_back({face.first, face.second,
+                    same_side_certainty(polar.balls[face.first], polar.balls[face.second]), true});
+  const Mesh crust =
+      crust_of(diagram, polar, label_inside(polar.balls.size(), ties, polar.is_outer));
+  if (crust.empty())
+    throw Error(Trouble::computation, "power-crust: the points enclose nothing",
+                "a sheet has no inside: try mls or delaunay");
+  result.surface = without_short_edges(crust, short_edge_spacings * median(used_spacing_m));
+  result.support_m = distance_to_points(result.surface, used.points);
+  for (auto& x : result.surface.vertices) x += middle;
+  result.unknowns = polar.balls.size();
+  result.stop = SolveStop::direct;
+  result.invalid_points = cloud.size() - used.size();
+  result.cost.seconds = watch.seconds();
+  return result;
+}
+#else
+SurfaceResult power_crust(const PointCloud&, std::span<const double>) {
+  throw Error(Trouble::usage, "power-crust: libscan was built without CGAL",
+              "configure with -DLIBSCAN_WITH_CGAL=ON");
+}
+#endif
+
+}  // namespace scan
