@@ -54,6 +54,14 @@ class Walk {
     }
     return std::nullopt;
   }
+  // How far a step moves the body's place in the image.
+  double moves_px(long at) const {
+    const LitRay& here = rays_[step_ * rows_ + row_];
+    if (!is_step(at)) return 0;
+    const auto place =
+        place_of(frames_, static_cast<std::size_t>(static_cast<long>(step_) + at), here);
+    return place ? std::abs(place->column_px - here.column_px) : 0;
+  }
   bool is_step(long at) const {
     const long step = static_cast<long>(step_) + at;
     return step >= 0 && step < static_cast<long>(frames_.images.size());
@@ -96,7 +104,8 @@ std::optional<double> unseen_shift_px(const StripeImages& frames, std::span<cons
   // At either end of the sweep both places lie on the same side, the second twice as far.
   if (one && !other && !walk.is_step(behind)) other = walk.next(ahead, 1, 2 * least_px);
   if (other && !one && !walk.is_step(ahead)) one = walk.next(behind, -1, 2 * least_px);
-  const bool is_swept = walk.is_step(ahead) || walk.is_step(behind);
+  const bool is_swept = (walk.is_step(ahead) || walk.is_step(behind)) &&
+                        std::max(walk.moves_px(1), walk.moves_px(-1)) > here.width_px;
   if (!one && !other) return is_swept ? std::nullopt : std::optional(cut_px);
   if (!one || !other) {
     const double whole_px = one ? one->width_px : other->width_px;

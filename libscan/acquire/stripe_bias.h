@@ -42,7 +42,8 @@ struct LitRay {
 // the body is not seen that far to one side the stripe may be cut: 0.15 widths, but none if it has
 // less than 0.8 of the width of the one on the other side, as one that is cut within a width of its
 // centre, or beside it: then its place is the edge's and no longer the plane's. None as well where
-// the steps see the body on neither side, so that it may be such a tail; of a single step 0.15.
+// steps a width and more apart see the body on neither side, so that it may be such a tail; where
+// the sweep stands still, or has no other step, 0.15.
 std::optional<double> unseen_shift_px(const StripeImages& frames, std::span<const LitRay> rays,
                                       std::size_t ray);
 

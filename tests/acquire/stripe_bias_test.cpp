@@ -116,6 +116,15 @@ TEST(UnseenShift, OfALonelyStripeIsNotKnownUnlessItIsTheOnlyStep) {
   EXPECT_NEAR(unseen_shift_px(one.frames, one.rays, 0).value(), 0.15 * 1.5, 1e-9);
 }
 
+// Two looks at one place are no word of an edge, even if a third is missing to either side.
+TEST(UnseenShift, OfASweepThatStandsStillIsThatOfACut) {
+  Sweep sweep = sweep_over_a_plane(5);
+  for (auto& pose : sweep.frames.scanner_from_camera) pose = sweep.frames.scanner_from_camera[0];
+  for (LitRay& ray : sweep.rays) ray.point = sweep.rays[0].point;
+  sweep.rays[0] = sweep.rays[4] = {};
+  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 2).value(), 0.15 * 1.5, 1e-9);
+}
+
 // Of a step in brightness by b = ln 2 between two steps, the parabola's slope at the stripe tells.
 TEST(UnseenShift, GrowsWithTheBrightnessStep) {
   Sweep sweep = sweep_over_a_plane(25);
