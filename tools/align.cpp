@@ -7,6 +7,7 @@
 
 #include "libscan/align/multiview.h"
 #include "libscan/core/error.h"
+#include "libscan/core/units.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
@@ -26,6 +27,7 @@ struct Arguments {
   std::string search = "kd-tree";
   std::string init;
   bool global = false;
+  double guess_rotation_deg = 0, guess_translation_m = 0;
   double max_distance_m = 0;
   double thin_m = 0;
   bool resume = false;
@@ -52,6 +54,21 @@ void write_results(const std::filesystem::path& folder, const std::vector<std::s
   write_json(folder / "alignment.json", json);
   write_poses_tum(folder / "poses.tum", named);
   write_scan(folder / "aligned.ply", Scan{.name = "aligned", .cloud = joined(scans, poses)});
+}
+
+// As given, else as the scans state it.
+std::vector<GuessSigma> sigmas_of(const Arguments& arguments, const Starts& starts) {
+  const double turn_deg = arguments.guess_rotation_deg, shift_m = arguments.guess_translation_m;
+  if (turn_deg == 0 && shift_m == 0) return starts.sigmas;
+  if (arguments.global)
+    throw Error(Trouble::usage,
+                "--global: finds poses without a guess, --guess-rotation and "
+                "--guess-translation say how far off one is",
+                "leave one of them out");
+  if (!(turn_deg > 0 && shift_m > 0))
+    throw Error(Trouble::usage,
+                "--guess-rotation and --guess-translation: must both be given and positive");
+  return std::vector<GuessSigma>(starts.scans.size(), {rad_from_deg(turn_deg), shift_m});
 }
 
 // Of all that decides the pairs.
@@ -133,6 +150,7 @@ int align_files(const Arguments& arguments, Console& console) {
   const std::filesystem::path folder = output;
   const std::string decided_by = fingerprint_of(arguments, inputs, starts);
   MultiviewOptions options = options_from(arguments);
+  options.guess_sigmas = sigmas_of(arguments, starts);
   if (arguments.resume) options.known_edges = read_pairs(folder / "pairs.json", decided_by);
   MultiviewResult part = align_kept(clouds, starts.world_from_scan, options, folder / "pairs.json",
                                     decided_by, console);
@@ -160,6 +178,12 @@ Action align_command(CommandLine& line) {
               {"kd-tree", "octree", "brute-force", "flann", "pcl-octree"}, "neighbour search");
   line.option("--init", arguments->init,
               "poses to start from (TUM, KITTI, 4x4, Stanford .conf, alignment.json)");
+  line.number("--guess-rotation", arguments->guess_rotation_deg, 0, 180,
+              "root mean square by which the starts are turned, degrees");
+  line.length(
+      "--guess-translation", arguments->guess_translation_m,
+      "root mean square by which they are shifted; where the scans leave motions open, both "
+      "tell how far off those are");
   line.flag("--global", arguments->global,
             "find the poses without any guess; the first scan fixes the world");
   line.length("--max-distance", arguments->max_distance_m,

@@ -61,11 +61,21 @@ std::string stem(const std::string& path) {
   return std::filesystem::path(path).stem().string();
 }
 
+std::vector<GuessSigma> guess_sigmas(const std::vector<Scan>& scans) {
+  std::vector<GuessSigma> sigmas;
+  for (const Scan& scan : scans) {
+    if (!scan.guess_sigma) return {};
+    sigmas.push_back(*scan.guess_sigma);
+  }
+  return sigmas;
+}
+
 Starts given_starts(const std::string& init, const std::vector<std::string>& inputs,
                     const std::vector<Scan>& scans, Console& console) {
   Starts starts;
   starts.world_from_scan = guesses(init, inputs, scans, console);
   starts.scans.resize(scans.size());
+  if (init.empty()) starts.sigmas = guess_sigmas(scans);
   std::iota(starts.scans.begin(), starts.scans.end(), std::size_t{0});
   return starts;
 }

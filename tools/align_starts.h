@@ -16,8 +16,12 @@ namespace scan {
 struct Starts {
   std::vector<std::size_t> scans;     // that have a start
   std::vector<Pose> world_from_scan;  // of these
+  std::vector<GuessSigma> sigmas;     // how far off they are; empty: nobody knows
   std::vector<GlobalGuess> found;     // of all scans if they were found without a guess; else empty
 };
+
+// How far off the scans' own guesses are; empty unless every scan states it.
+std::vector<GuessSigma> guess_sigmas(const std::vector<Scan>& scans);
 
 // From the file `init`, by the scans' names, else in its order; without a file the scans' own.
 Starts given_starts(const std::string& init, const std::vector<std::string>& inputs,

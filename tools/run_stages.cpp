@@ -11,6 +11,7 @@
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/truth_file.h"
+#include "tools/align_starts.h"
 #include "tools/inputs.h"
 #include "tools/pose_trace.h"
 #include "tools/run_files.h"
@@ -68,6 +69,7 @@ void align_run(const std::filesystem::path& run, const Recipe& recipe, Console& 
     guesses.push_back(scan.world_from_scanner_guess);
   }
   MultiviewOptions options = recipe.align;
+  options.guess_sigmas = guess_sigmas(scans);
   std::vector<std::vector<Pose>> joint;
   options.on_round = [&](std::span<const Pose> found) {
     joint.emplace_back(found.begin(), found.end());

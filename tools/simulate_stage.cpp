@@ -108,6 +108,14 @@ struct Stage {
   synth::RayCaster measurable;  // of what has a truth
 };
 
+// The first scan's guess is exact. None where the recipe lets all be exact, of turn or shift: that
+// is no statement of a device.
+std::optional<GuessSigma> sigma_of_guess(const synth::PoseNoise& noise, std::size_t scan) {
+  if (!(noise.rotation_rad > 0 && noise.translation_m > 0)) return std::nullopt;
+  if (scan == 0) return GuessSigma{};
+  return GuessSigma{noise.rotation_rad, noise.translation_m};
+}
+
 void simulate_scan(const fs::path& run, std::size_t i, const Stage& stage) {
   ScanRecord record;
   const Stopwatch rendering;
@@ -124,6 +132,7 @@ void simulate_scan(const fs::path& run, std::size_t i, const Stage& stage) {
   Scan scan = decode(i, frames, stage.recipe);
   record.acquire_s = decoding.seconds();
   scan.world_from_scanner_guess = stage.guesses[i];
+  scan.guess_sigma = sigma_of_guess(stage.recipe.viewpoints.pose_noise, i);
   write_scan(scan_path(run, i), scan);
   write_true_rays(truth_path(run), i,
                   true_rays(stage.recipe.scanner, stage.measurable, stage.poses[i]));

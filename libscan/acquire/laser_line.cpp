@@ -108,7 +108,12 @@ std::vector<RayOutcome> widened(const StripeImages& frames, std::span<const Read
   parallel_for(outcomes.size(), [&](std::size_t ray) {
     outcomes[ray] = readings[ray].outcome;
     if (!outcomes[ray].miss.empty()) return;
-    const double ratio = decoding::unseen_shift_px(frames, rays, ray) / readings[ray].peak.sigma_px;
+    const auto shift_px = decoding::unseen_shift_px(frames, rays, ray);
+    if (!shift_px) {
+      outcomes[ray] = missed(reason::inconsistent);
+      return;
+    }
+    const double ratio = *shift_px / readings[ray].peak.sigma_px;
     outcomes[ray].sigma_m *= std::hypot(1, ratio);
     outcomes[ray].covariance *= 1 + ratio * ratio;
   });

@@ -4,6 +4,7 @@
 // but those of the steps before and behind it can.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct LitPlace {
   double offset_m = 0;  // from this step's light plane, along its normal
   double column_px = 0;
   double height_e = 0;  // of its own stripe
+  double width_px = 0;  // 1 sigma of it
 };
 
 // The stripe lights the places with offsets p by exp(-p^2 / (2 w^2)). Let u = a p + b p^2 be the
@@ -37,7 +39,12 @@ struct LitRay {
 
 // One standard deviation, in columns, of the centre of `ray` (of step * rows + row) besides its
 // noise: the shift above, by places of the same row that are seen at least four widths away. Where
-// the body is not seen that far the stripe may be cut: 0.15 widths.
-double unseen_shift_px(const StripeImages& frames, std::span<const LitRay> rays, std::size_t ray);
+// the body is not seen that far to one side the stripe may be cut: 0.15 widths, but none if it has
+// less than 0.8 of the width of the one on the other side, as one that is cut within a width of its
+// centre, or beside it: then its place is the edge's and no longer the plane's. None as well where
+// steps a width and more apart see the body on neither side, so that it may be such a tail; where
+// the sweep stands still, or has no other step, 0.15.
+std::optional<double> unseen_shift_px(const StripeImages& frames, std::span<const LitRay> rays,
+                                      std::size_t ray);
 
 }  // namespace scan::decoding

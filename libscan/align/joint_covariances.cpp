@@ -73,7 +73,8 @@ struct CovarianceBlocks {
 };
 
 CovarianceBlocks covariance_blocks(const JointSystem& system, std::span<const JointForm> forms,
-                                   std::size_t scans, const JointBasis& weak) {
+                                   std::size_t scans, const JointBasis& weak,
+                                   const GuessPrior& prior) {
   std::set<std::pair<std::size_t, std::size_t>> couples;
   for (const JointForm& form : forms) couples.insert(std::minmax(form.source, form.target));
   std::vector<bool> known(scans);
@@ -83,7 +84,7 @@ CovarianceBlocks covariance_blocks(const JointSystem& system, std::span<const Jo
     blocks.places.emplace_back(system.row(i) / 6, system.row(j) / 6);
   };
   for (std::size_t i = 0; i < scans; ++i) {
-    known[i] = system.has(i) && weak_motions_of(i, weak).cols() == 0;
+    known[i] = system.has(i) && (prior.known() || weak_motions_of(i, weak).cols() == 0);
     if (known[i]) add(i, i);
   }
   for (const auto& [i, j] : couples)
@@ -91,29 +92,57 @@ CovarianceBlocks covariance_blocks(const JointSystem& system, std::span<const Jo
   return blocks;
 }
 
+// W Q W^T (joint_prior.h), its blocks.
+class GuessedPart {
+ public:
+  GuessedPart(const JointSystem& system, const JointBasis& weak, const GuessPrior& prior)
+      : motions_(system.reduced(weak)) {
+    if (!prior.known() || motions_.cols() == 0) return;
+    const JointMatrix along = motions_.sparseView();
+    const JointMatrix information = matrix_of(system, system.information(prior));
+    spread_ = JointFactor(along.transpose() * information * along).solve(motions_.transpose());
+  }
+  Matrix6 block(const BlockAt& at) const {
+    if (spread_.size() == 0) return Matrix6::Zero();
+    return motions_.middleRows<6>(6 * Eigen::Index(at.first)) *
+           spread_.middleCols<6>(6 * Eigen::Index(at.second));
+  }
+
+ private:
+  Eigen::MatrixXd motions_, spread_;  // W, and Q W^T if both are there
+};
+
 }  // namespace
 
 JointCovariances joint_covariances(std::span<const JointForm> forms,
                                    std::span<const JointDetail> details, const JointFrame& frame,
-                                   const JointBasis& weak) {
+                                   const JointBasis& weak, const GuessPrior& prior) {
   JointCovariances result;
   result.of_scan.resize(frame.centres.size());
+  result.from_guess.resize(frame.centres.size());
   for (std::size_t i = 0; i < result.of_scan.size(); ++i)
     if (!frame.free[i]) result.of_scan[i] = Matrix6::Zero();
   const JointSystem system(forms, frame);
   if (system.rows() == 0) return result;
-  const WithholdingSolver solver(matrix_of(system, system.sum_of(details)), system.reduced(weak));
-  const JointMatrix scatter = matrix_of(system, shared_scatter(system, forms, details, weak));
-  const CovarianceBlocks wanted = covariance_blocks(system, forms, frame.centres.size(), weak);
-  const std::vector<Matrix6> blocks = solver.sandwich_blocks(scatter, wanted.places);
+  const JointMatrix guessed = matrix_of(system, system.information(prior));
+  const WithholdingSolver solver(matrix_of(system, system.sum_of(details)) + guessed,
+                                 withheld(system, weak, prior));
+  const JointMatrix scatter =
+      matrix_of(system, shared_scatter(system, forms, details, weak)) + guessed;
+  const CovarianceBlocks wanted =
+      covariance_blocks(system, forms, frame.centres.size(), weak, prior);
+  std::vector<Matrix6> blocks = solver.sandwich_blocks(scatter, wanted.places);
+  const GuessedPart along_weak(system, weak, prior);
   Matrix6 units = Matrix6::Identity();
   units.bottomRightCorner<3, 3>() *= frame.size_m;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     const auto& [i, j] = wanted.scans[k];
-    if (i == j)
-      result.of_scan[i] = units * (0.5 * (blocks[k] + blocks[k].transpose())) * units;
-    else
-      result.between.push_back({i, j, units * blocks[k] * units});
+    const Matrix6 from_guess = along_weak.block(wanted.places[k]);
+    blocks[k] += from_guess;
+    if (i == j) result.of_scan[i] = units * (0.5 * (blocks[k] + blocks[k].transpose())) * units;
+    if (i == j && weak_motions_of(i, weak).cols() > 0)
+      result.from_guess[i] = units * (0.5 * (from_guess + from_guess.transpose())) * units;
+    if (i != j) result.between.push_back({i, j, units * blocks[k] * units});
   }
   return result;
 }

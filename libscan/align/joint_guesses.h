@@ -15,12 +15,14 @@ struct WayToGuesses {
   bool whole = true;            // false: the way is longer than `most_m`, and this a part of it
 };
 
-// The motion along `weak` after which the couples stand to each other as nearly as may be as in the
-// guesses, in least squares over all couples of `forms`. It is the couples that count, not the
-// places: in a long chain these drift, and a weak couple would have to make up for all of it. No
-// couple moves by more than `most_m` at its size, else its partners would be lost.
+// The motion along `weak` after which the scans stand where the guesses have them most likely
+// (joint_prior.h). Without a prior, after which the couples stand to each other as nearly as may be
+// as in the guesses, in least squares over all couples of `forms`: in a long chain the places
+// drift, and a weak couple would have to make up for all of it. No couple moves by more than
+// `most_m` at its size, else its partners would be lost.
 WayToGuesses way_to_guesses(std::span<const JointForm> forms, const JointFrame& frame,
                             const JointBasis& weak, std::span<const Pose> world_from_local,
-                            std::span<const Pose> guesses, double most_m);
+                            std::span<const Pose> guesses, double most_m,
+                            const GuessPrior& prior = {});
 
 }  // namespace scan

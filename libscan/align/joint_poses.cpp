@@ -40,6 +40,7 @@ class Refinement {
 
  private:
   JointFrame frame() const;
+  GuessPrior prior() const;
   bool find_pairs(std::vector<JointDetail>* details);
   void settle(int most_rounds, const Progress& progress);
   std::vector<Vector6> damped(std::vector<Vector6> twists);
@@ -101,6 +102,14 @@ JointFrame Refinement::frame() const {
   frame.free[anchor_] = false;
   for (const Pose& pose : out_.world_from_local) frame.centres.push_back(pose.translation());
   return frame;
+}
+
+GuessPrior Refinement::prior() const {
+  std::vector<Eigen::Vector3d> scanners;  // the origins of the scans' own frames
+  for (std::size_t i = 0; i < guesses_.size(); ++i)
+    scanners.push_back(guesses_[i] * Eigen::Vector3d(-scans_.clouds[i].origin));
+  return guess_prior(frame(), out_.world_from_local, guesses_, scanners, options_.guess_sigmas,
+                     anchor_);
 }
 
 // Returns whether all scales follow the residuals. Of many couples one median or another always
@@ -165,9 +174,10 @@ void Refinement::settle(int most_rounds, const Progress& progress) {
   for (bool done = false; !done && out_.rounds < most_rounds;) {
     const bool settled = find_pairs(nullptr);
     if (forms_.empty()) break;
-    std::vector<Vector6> twists = joint_step(forms_, frame(), weak_);
+    const GuessPrior known = prior();
+    std::vector<Vector6> twists = joint_step(forms_, frame(), weak_, known);
     const WayToGuesses way = way_to_guesses(forms_, frame(), weak_, out_.world_from_local, guesses_,
-                                            icp_.max_pair_distance_m);
+                                            icp_.max_pair_distance_m, known);
     for (std::size_t i = 0; i < twists.size(); ++i) twists[i] += way.twists[i];
     const bool still = move(damped(std::move(twists)));
     done = still && settled && way.whole;
@@ -204,7 +214,7 @@ void Refinement::summarise(const std::vector<JointDetail>& details) {
     if (out_.overlapping.empty() || out_.overlapping.back() != couple)
       out_.overlapping.push_back(couple);
   }
-  JointCovariances covariances = joint_covariances(forms_, details, frame(), weak_);
+  JointCovariances covariances = joint_covariances(forms_, details, frame(), weak_, prior());
   out_.covariances_between = std::move(covariances.between);
   for (std::size_t i = 0; i < paired.size(); ++i) {
     JointScan& scan = out_.scans[i];
@@ -213,6 +223,7 @@ void Refinement::summarise(const std::vector<JointDetail>& details) {
     scan.rms_m = weights[i] > 0 ? std::sqrt(squares[i] / weights[i]) : 0;
     scan.weak = weak_motions_of(i, weak_);
     scan.covariance = covariances.of_scan[i];
+    scan.covariance_from_guess = covariances.from_guess[i];
     scan.still = scan.still || i == anchor_;
   }
 }

@@ -14,13 +14,13 @@
 namespace scan {
 
 struct JointScan {
-  bool paired = false;                // in a couple that counts; of others nothing below holds
-  bool still = false;                 // its last step was less than half of its standard error
-  int iterations = 0;                 // rounds in which it moved
-  double rms_m = 0;                   // of the weighted residuals
-  double paired_fraction = 0;         // of its points asked, those with a partner in any other scan
-  TwistBasis weak{6, 0};              // about the middle of its points, in units of size_m
-  std::optional<Matrix6> covariance;  // see ScanPose
+  bool paired = false;         // in a couple that counts; of others nothing below holds
+  bool still = false;          // its last step was less than half of its standard error
+  int iterations = 0;          // rounds in which it moved
+  double rms_m = 0;            // of the weighted residuals
+  double paired_fraction = 0;  // of its points asked, those with a partner in any other scan
+  TwistBasis weak{6, 0};       // about the middle of its points, in units of size_m
+  std::optional<Matrix6> covariance, covariance_from_guess;  // see ScanPose
 };
 
 struct JointPoses {

@@ -9,14 +9,15 @@
 namespace scan {
 
 std::vector<Vector6> joint_step(std::span<const JointForm> forms, const JointFrame& frame,
-                                const JointBasis& weak) {
+                                const JointBasis& weak, const GuessPrior& prior) {
   const JointSystem system(forms, frame);
   if (system.rows() == 0) return std::vector<Vector6>(frame.centres.size(), Vector6::Zero());
-  const WithholdingSolver solver(matrix_of(system, system.sum([](const JointForm& form) -> Matrix6 {
-                                   return form.a + rounding_of(form.a);
-                                 })),
-                                 system.reduced(weak));
-  return system.twists(solver.solve(system.right_side()));
+  const JointMatrix data = matrix_of(system, system.sum([](const JointForm& form) -> Matrix6 {
+    return form.a + rounding_of(form.a);
+  }));
+  const WithholdingSolver solver(data + matrix_of(system, system.information(prior)),
+                                 withheld(system, weak, prior));
+  return system.twists(solver.solve(system.right_side() + system.right_side(prior)));
 }
 
 std::vector<RelativeStep> relative_steps(std::span<const JointForm> forms, const JointFrame& frame,

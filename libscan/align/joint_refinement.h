@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libscan/align/joint_pairs.h"
+#include "libscan/align/joint_prior.h"
 #include "libscan/core/stated_poses.h"
 
 namespace scan {
@@ -32,10 +33,11 @@ using JointBasis = Eigen::MatrixXd;
 // them; of more than 48 only what single scans may do, the others held, is found.
 JointBasis joint_weak_motions(std::span<const JointForm> forms, const JointFrame& frame);
 
-// Twists that minimise the sum of the forms, with no part along `weak`; zero for scans that are not
-// free or in no form.
+// Twists that minimise the sum of the forms, with no part along `weak`; with a prior, what is most
+// likely of the part that is not along `weak` (joint_prior.h). Zero for scans that are not free or
+// in no form.
 std::vector<Vector6> joint_step(std::span<const JointForm> forms, const JointFrame& frame,
-                                const JointBasis& weak);
+                                const JointBasis& weak, const GuessPrior& prior = {});
 
 // What twists change between a scan and those that it is coupled to. How far all of them move
 // together says nothing: a chain of many may still sway where each couple has long settled.
@@ -53,6 +55,7 @@ TwistBasis weak_motions_of(std::size_t scan, const JointBasis& weak);
 
 struct JointCovariances {
   std::vector<std::optional<Matrix6>> of_scan;
+  std::vector<std::optional<Matrix6>> from_guess;  // the part along weak motions
   std::vector<CommonCovariance> between;  // of all couples of scans that have one and are free
 };
 
@@ -61,9 +64,10 @@ struct JointCovariances {
 // both directions of a couple, have in common counts (Huber 1967; Liang and Zeger 1986). What
 // places share is a number for each scan (shared_noise.h), by whose root its pulls are longer: a
 // scatter of patches wide enough to hold it would have so few that its inverse is too large by
-// half. None for scans that are free and in no form or weak.
+// half. With a prior its information is added to both B and M and the weak motions add W Q W^T
+// (joint_prior.h). None for scans that are free and in no form, or weak and without a prior.
 JointCovariances joint_covariances(std::span<const JointForm> forms,
                                    std::span<const JointDetail> details, const JointFrame& frame,
-                                   const JointBasis& weak);
+                                   const JointBasis& weak, const GuessPrior& prior = {});
 
 }  // namespace scan

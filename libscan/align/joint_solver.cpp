@@ -37,7 +37,29 @@ JointMatrix block_projector(const Eigen::MatrixXd& weak) {
   return projector;
 }
 
+// Gram and Schmidt's. Columns of different scans meet nowhere, which keeps the work of many small.
+JointMatrix orthonormal(const JointMatrix& columns) {
+  std::vector<Eigen::SparseVector<double>> basis;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    Eigen::SparseVector<double> rest = columns.col(k);
+    for (const auto& before : basis)
+      if (const double along = before.dot(rest); along != 0) rest -= along * before;
+    basis.push_back(rest / rest.norm());
+  }
+  JointMatrix all(columns.rows(), columns.cols());
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) all.col(k) = basis[std::size_t(k)];
+  return all;
+}
+
 }  // namespace
+
+Eigen::MatrixXd withheld(const JointSystem& system, const JointBasis& weak,
+                         const GuessPrior& prior) {
+  const Eigen::MatrixXd motions = system.reduced(weak);
+  if (!prior.known() || weak.cols() == 0) return motions;
+  const JointMatrix information = matrix_of(system, system.information(prior));
+  return orthonormal(information * JointMatrix(motions.sparseView()));
+}
 
 JointMatrix matrix_of(const JointSystem& system, const JointEntries& entries) {
   JointMatrix matrix(system.rows(), system.rows());

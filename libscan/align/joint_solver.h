@@ -22,6 +22,11 @@ JointMatrix matrix_of(const JointSystem& system, const JointEntries& entries);
 // n scans falls with n^-4.
 JointMatrix least_diagonal(const JointMatrix& a);
 
+// Orthonormal basis of what must not be in a step: of the weak motions W, or with a prior of
+// E^-1 W (joint_prior.h).
+Eigen::MatrixXd withheld(const JointSystem& system, const JointBasis& weak,
+                         const GuessPrior& prior);
+
 // L D L^T of a symmetric matrix. Throws scan::Error (computation) for a singular one.
 class JointFactor {
  public:

@@ -76,6 +76,20 @@ Eigen::VectorXd JointSystem::right_side() const {
   return b;
 }
 
+JointEntries JointSystem::information(const GuessPrior& prior) const {
+  JointEntries entries;
+  for (std::size_t i = 0; i < prior.information.size(); ++i)
+    if (has(i)) add_block(entries, row(i), row(i), prior.information[i]);
+  return entries;
+}
+
+Eigen::VectorXd JointSystem::right_side(const GuessPrior& prior) const {
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(rows_);
+  for (std::size_t i = 0; i < prior.information.size(); ++i)
+    if (has(i)) b.segment<6>(row(i)) = prior.information[i] * prior.twists[i];
+  return b;
+}
+
 PlacePulls JointSystem::pulls_by_place(std::span<const JointDetail> details,
                                        std::span<const double> factors) const {
   PlacePulls places;

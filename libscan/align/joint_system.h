@@ -49,6 +49,10 @@ class JointSystem {
   JointEntries sum_of(std::span<const JointDetail> details) const;  // of their curvatures
   Eigen::VectorXd right_side() const;
 
+  // E^-1 and E^-1 e of a prior; zero of none.
+  JointEntries information(const GuessPrior& prior) const;
+  Eigen::VectorXd right_side(const GuessPrior& prior) const;
+
   // The pulls of all forms, each times its form's factor: what it pulls the source with, it pulls
   // the target back with.
   PlacePulls pulls_by_place(std::span<const JointDetail> details,

@@ -38,6 +38,26 @@ void check_guess(const Pose& guess, std::size_t i) {
                                     " away from a rotation, must be 1e-6 at most");
 }
 
+// Turn and shift are known of each scan against the anchor, and none exactly.
+void check_sigmas(const MultiviewOptions& options, std::size_t scans) {
+  const std::vector<GuessSigma>& sigmas = options.guess_sigmas;
+  if (sigmas.empty()) return;
+  if (sigmas.size() != scans)
+    throw Error(Trouble::usage, "align_scans: guess_sigmas: " + std::to_string(sigmas.size()) +
+                                    " for " + std::to_string(scans) + " scans");
+  const GuessSigma& anchor = sigmas[static_cast<std::size_t>(options.anchor)];
+  const auto fits = [](double own, double of_anchor, bool is_anchor) {
+    return std::isfinite(own) && own >= 0 && (is_anchor || own + of_anchor > 0);
+  };
+  for (std::size_t i = 0; i < scans; ++i) {
+    const bool is_anchor = i == static_cast<std::size_t>(options.anchor);
+    if (!fits(sigmas[i].rotation_rad, anchor.rotation_rad, is_anchor) ||
+        !fits(sigmas[i].translation_m, anchor.translation_m, is_anchor))
+      throw Error(Trouble::usage, "align_scans: guess_sigmas: of scan " + std::to_string(i) +
+                                      ", must be finite and positive");
+  }
+}
+
 void check_input(std::span<const PointCloud> clouds, std::span<const Pose> guesses,
                  const MultiviewOptions& options) {
   check(options);
@@ -47,6 +67,7 @@ void check_input(std::span<const PointCloud> clouds, std::span<const Pose> guess
   if (!clouds.empty() && static_cast<std::size_t>(options.anchor) >= clouds.size())
     throw Error(Trouble::usage, "align_scans: anchor: " + std::to_string(options.anchor) +
                                     ", must be below " + std::to_string(clouds.size()));
+  check_sigmas(options, clouds.size());
   for (std::size_t i = 0; i < clouds.size(); ++i) {
     check(clouds[i]);
     if (!clouds[i].empty() && clouds[i].normals.empty())
@@ -205,6 +226,7 @@ void Alignment::report(const JointPoses& joint) {
     scan.inlier_fraction_of_source = found.paired_fraction;
     scan.iterations = found.iterations;
     scan.covariance = found.covariance;
+    scan.covariance_from_guess = found.covariance_from_guess;
     scan.covariance_centre = origin_ + poses_[i].translation();
     const DataFrame frame{poses_[i].translation(), joint.size_m};
     scan.weak_directions = name_motions(found.weak, frame, origin_);

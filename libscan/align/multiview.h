@@ -37,6 +37,10 @@ struct MultiviewOptions {
   double thin_m = 0;    // voxel side; 0: from the data
   int max_rounds = 60;  // of the joint step: correspondences found anew, then one solve
   int anchor = 0;       // the scan whose pose is kept
+  // How far off each scan's guess is, the one's error telling nothing of another's; empty: nobody
+  // knows. The anchor's makes all others as much worse; a scan and the anchor must not both be
+  // exact.
+  std::vector<GuessSigma> guess_sigmas = {};
   // Pairs of an earlier, interrupted call: not aligned again when their guess is wanted once more.
   std::vector<ScanEdge> known_edges = {};
   // Called for each pair that is aligned, in any order; never from two threads at once.
@@ -57,9 +61,12 @@ struct ScanPose {
   double agreement = 0;  // share of its points near other scans that lie on them within noise
   std::vector<std::string> weak_directions;
   // Of a turn (rad) about the middle of the scan's points and a shift (m) of that middle, along the
-  // world's axes, the anchor held; none if a motion is weak or the scan is not aligned. Noise, also
-  // such as neighbours share, counts; a smooth distortion by the device does not.
+  // world's axes, the anchor held; none if the scan is not aligned, or a motion is weak and nobody
+  // knows how far off the guess is. Noise, also such as neighbours share, counts; a smooth
+  // distortion by the device does not.
   std::optional<Matrix6> covariance;
+  // The part of it that no data tell: along the weak motions the scan stands as in its guess.
+  std::optional<Matrix6> covariance_from_guess;
   Eigen::Vector3d covariance_centre = Eigen::Vector3d::Zero();  // that middle, world
 };
 
@@ -77,7 +84,9 @@ struct MultiviewResult {
 // let overlap are aligned by icp; solve_pose_graph tells which of them agree; pairs that did not
 // are tried again from its poses; at last all poses but the anchor's are refined together over
 // correspondences between all overlapping scans. Scans that no accepted edge ties to the anchor
-// keep their guess and stop as no_correspondences.
+// keep their guess and stop as no_correspondences. With `guess_sigmas` the guesses count as
+// measurements in the last step, so that what the data leave open stands as they have it most
+// likely; without, the scans stand to each other as nearly as in the guesses.
 MultiviewResult align_scans(std::span<const PointCloud> clouds, std::span<const Pose> guesses,
                             const MultiviewOptions& options = {}, const Progress& progress = {});
 

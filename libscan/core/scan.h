@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct RayGrid {
   std::uint32_t columns = 0;
 };
 
+// How far off a guess of a scanner's pose is: turned about some axis through the scanner, shifted
+// in some direction, each as likely as any; root mean squares of angle and distance.
+struct GuessSigma {
+  double rotation_rad = 0, translation_m = 0;
+};
+
 struct Scan {
   std::string name;
   PointCloud cloud;                // scanner frame
@@ -29,6 +36,7 @@ struct Scan {
   std::map<std::string, std::size_t> misses;            // reason -> rays without a point
   Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  // scanner frame: normals face this point
   Pose world_from_scanner_guess = Pose::Identity();
+  std::optional<GuessSigma> guess_sigma;  // none: not known
 };
 
 }  // namespace scan

@@ -27,13 +27,15 @@ ordered_json rows_of(const Matrix6& matrix) {
 }
 
 void add_covariance(const ScanPose& scan, ordered_json& json) {
-  for (const char* key :
-       {"sigma_rotation_rad", "sigma_translation_m", "covariance", "covariance_centre_m"})
+  for (const char* key : {"sigma_rotation_rad", "sigma_translation_m", "covariance",
+                          "covariance_from_guess", "covariance_centre_m"})
     json[key] = nullptr;
   if (!scan.covariance) return;
   json["sigma_rotation_rad"] = std::sqrt(scan.covariance->topLeftCorner<3, 3>().trace());
   json["sigma_translation_m"] = std::sqrt(scan.covariance->bottomRightCorner<3, 3>().trace());
   json["covariance"] = rows_of(*scan.covariance);
+  if (scan.covariance_from_guess)
+    json["covariance_from_guess"] = rows_of(*scan.covariance_from_guess);
   json["covariance_centre_m"] =
       std::vector<double>(scan.covariance_centre.begin(), scan.covariance_centre.end());
 }

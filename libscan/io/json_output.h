@@ -25,11 +25,12 @@ nlohmann::ordered_json scan_json(const std::string& file, const Scan& scan);
 // alignment.json: `scans`: [{`file`, `world_from_scan`, `stop`, `iterations`, `rms_m`,
 // `inlier_fraction_of_source`, `agreement`, `weak_directions`, `sigma_rotation_rad`,
 // `sigma_translation_m`, `covariance` (6 rows: rotation rad, translation m),
-// `covariance_centre_m`}], the last four null where the covariance is unknown; a sigma is the root
+// `covariance_from_guess` (the part of it along the weak directions, null where there are none),
+// `covariance_centre_m`}], the last five null where the covariance is unknown; a sigma is the root
 // of the sum of three variances. `covariances_between`: [{`scans` (two numbers, from 0),
-// `covariance` (rows: the first's motion)}]. `pairs`: [{`source`, `target` (files), `accepted`, `stop`,
-// `overlap`, `agreement`, `rms_m`}], `method`, `search`, `stop`, `rounds`, `pairs_used`. Throws
-// scan::Error (usage) unless there is one file for each scan.
+// `covariance` (rows: the first's motion)}]. `pairs`: [{`source`, `target` (files), `accepted`,
+// `stop`, `overlap`, `agreement`, `rms_m`}], `method`, `search`, `stop`, `rounds`, `pairs_used`.
+// Throws scan::Error (usage) unless there is one file for each scan.
 nlohmann::ordered_json alignment_json(std::span<const std::string> files,
                                       const MultiviewResult& result, const IcpOptions& options);
 

@@ -40,6 +40,17 @@ Pose parse_guess(std::string_view words, const std::filesystem::path& path) {
   return pose_from_matrix(matrix, path.string() + ": " + key);
 }
 
+GuessSigma parse_guess_sigma(std::string_view words, const std::filesystem::path& path) {
+  GuessSigma sigma;
+  for (double* value : {&sigma.rotation_rad, &sigma.translation_m}) {
+    const auto number = number_from<double>(take_word(words));
+    if (!number || !std::isfinite(*number) || *number < 0)
+      fail(path, "comment 'libscan guess_sigma' must hold 2 finite numbers, none negative");
+    *value = *number;
+  }
+  return sigma;
+}
+
 std::string viewpoint_comment(const Eigen::Vector3d& viewpoint) {
   std::string text = "libscan viewpoint";
   for (const double x : viewpoint) text += " " + shortest(x);
@@ -90,6 +101,8 @@ void parse_comment(std::string_view words, Scan& scan, const std::filesystem::pa
     scan.viewpoint = parse_viewpoint(words, path);
   } else if (key == "world_from_scanner_guess") {
     scan.world_from_scanner_guess = parse_guess(words, path);
+  } else if (key == "guess_sigma") {
+    scan.guess_sigma = parse_guess_sigma(words, path);
   }
 }
 
@@ -174,6 +187,9 @@ Ply ply_from(const Scan& scan) {
     ply.comments.push_back("libscan miss " + std::to_string(count) + " " + reason);
   ply.comments.push_back(viewpoint_comment(scan.viewpoint));
   ply.comments.push_back(guess_comment(scan.world_from_scanner_guess));
+  if (scan.guess_sigma)
+    ply.comments.push_back("libscan guess_sigma " + shortest(scan.guess_sigma->rotation_rad) + " " +
+                           shortest(scan.guess_sigma->translation_m));
   return ply;
 }
 

@@ -8,6 +8,7 @@
 //   libscan miss COUNT REASON
 //   libscan viewpoint X Y Z
 //   libscan world_from_scanner_guess (16 numbers, row by row)
+//   libscan guess_sigma RAD M (how far off it is, see GuessSigma)
 #pragma once
 
 #include <filesystem>

@@ -79,7 +79,7 @@ Sweep sweep_over_a_plane(std::size_t steps) {
 TEST(UnseenShift, OfAPlaneIsNoneFromEndToEndOfTheSweep) {
   const Sweep sweep = sweep_over_a_plane(25);
   for (std::size_t ray = 0; ray < sweep.rays.size(); ++ray)
-    EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, ray), 0, 1e-9) << ray;
+    EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, ray).value(), 0, 1e-9) << ray;
 }
 
 // Four widths are three steps: a hole within them may have cut the stripe.
@@ -89,9 +89,40 @@ TEST(UnseenShift, BesideAHoleIsThatOfACut) {
   for (std::size_t ray = 0; ray < sweep.rays.size(); ++ray) {
     if (ray == 12) continue;
     const bool is_near = ray >= 9 && ray <= 15;
-    EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, ray), is_near ? 0.15 * 1.5 : 0, 1e-9)
+    EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, ray).value(), is_near ? 0.15 * 1.5 : 0,
+                1e-9)
         << ray;
   }
+}
+
+// The last stripe before a hole is a place if it is as wide as those farther in, and none if the
+// edge has taken a part of it.
+TEST(UnseenShift, OfACutStripeIsNotKnown) {
+  Sweep sweep = sweep_over_a_plane(25);
+  sweep.rays[12] = {};
+  sweep.rays[11].width_px = 0.81 * 1.5;
+  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 11).value(), 0.15 * 0.81 * 1.5, 1e-9);
+  sweep.rays[11].width_px = 0.79 * 1.5;
+  EXPECT_FALSE(unseen_shift_px(sweep.frames, sweep.rays, 11));
+  sweep.rays[13].width_px = 0.79 * 1.5;
+  EXPECT_FALSE(unseen_shift_px(sweep.frames, sweep.rays, 13));
+}
+
+TEST(UnseenShift, OfALonelyStripeIsNotKnownUnlessItIsTheOnlyStep) {
+  Sweep sweep = sweep_over_a_plane(25);
+  for (const std::size_t ray : {10u, 11u, 13u, 14u}) sweep.rays[ray] = {};
+  EXPECT_FALSE(unseen_shift_px(sweep.frames, sweep.rays, 12));
+  const Sweep one = sweep_over_a_plane(1);
+  EXPECT_NEAR(unseen_shift_px(one.frames, one.rays, 0).value(), 0.15 * 1.5, 1e-9);
+}
+
+// Two looks at one place are no word of an edge, even if a third is missing to either side.
+TEST(UnseenShift, OfASweepThatStandsStillIsThatOfACut) {
+  Sweep sweep = sweep_over_a_plane(5);
+  for (auto& pose : sweep.frames.scanner_from_camera) pose = sweep.frames.scanner_from_camera[0];
+  for (LitRay& ray : sweep.rays) ray.point = sweep.rays[0].point;
+  sweep.rays[0] = sweep.rays[4] = {};
+  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 2).value(), 0.15 * 1.5, 1e-9);
 }
 
 // Of a step in brightness by b = ln 2 between two steps, the parabola's slope at the stripe tells.
@@ -99,8 +130,9 @@ TEST(UnseenShift, GrowsWithTheBrightnessStep) {
   Sweep sweep = sweep_over_a_plane(25);
   for (std::size_t ray = 13; ray < 25; ++ray) sweep.rays[ray].height_e = 2000;
   // ln 2 / (2 * 6 columns) * (1.5 columns)^2
-  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 12), std::log(2.0) / 12 * 2.25, 1e-9);
-  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 2), 0, 1e-9);
+  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 12).value(), std::log(2.0) / 12 * 2.25,
+              1e-9);
+  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 2).value(), 0, 1e-9);
 }
 
 }  // namespace

@@ -97,9 +97,10 @@ inline double to_step_m(const Vector3d& arm, const Vector3d& ray, double step_m,
 
 // In the frame of the surface: a grid of side x side rays, shaken by a third of a step, over the
 // square of 2 m about `middle`, from 3 m above it.
-inline PointCloud simulated_scan(const WavySurface& surface, ScannerNoise kind, double sigma_m,
-                                 const Vector3d& middle, int side, std::uint64_t seed,
-                                 std::uint32_t scan) {
+template <class Surface>
+PointCloud simulated_scan(const Surface& surface, ScannerNoise kind, double sigma_m,
+                          const Vector3d& middle, int side, std::uint64_t seed,
+                          std::uint32_t scan) {
   const Vector3d eye = middle + Vector3d(0, 0, 3);
   const bool lines = kind == ScannerNoise::laser_line, all = kind == ScannerNoise::correlated;
   const double shared_share = lines ? 0.5 : all ? 0.9 : 0;  // of the variance

@@ -55,6 +55,8 @@ TEST(JsonOutput, AlignmentIsWhatReadPosesReads) {
   Vector6 variances;
   variances << 1, 4, 9, 16, 25, 36;
   result.scans[1].covariance = Matrix6(variances.asDiagonal());
+  result.scans[1].covariance_from_guess = Matrix6::Zero();
+  (*result.scans[1].covariance_from_guess)(4, 4) = 16;
   result.edges.push_back({.source = 0, .target = 1});
   const std::vector<std::string> files = {"a.ply", "b.ply"};
   const ordered_json alignment = alignment_json(files, result, {});
@@ -62,11 +64,12 @@ TEST(JsonOutput, AlignmentIsWhatReadPosesReads) {
             (std::vector<std::string>{"file", "world_from_scan", "stop", "iterations", "rms_m",
                                       "inlier_fraction_of_source", "agreement", "weak_directions",
                                       "sigma_rotation_rad", "sigma_translation_m", "covariance",
-                                      "covariance_centre_m"}));
+                                      "covariance_from_guess", "covariance_centre_m"}));
   EXPECT_TRUE(alignment["scans"][0]["covariance"].is_null());
   EXPECT_DOUBLE_EQ(alignment["scans"][1]["sigma_rotation_rad"].get<double>(), std::sqrt(14.0));
   EXPECT_DOUBLE_EQ(alignment["scans"][1]["sigma_translation_m"].get<double>(), std::sqrt(77.0));
   EXPECT_EQ(alignment["scans"][1]["covariance"][5][5], 36);
+  EXPECT_EQ(alignment["scans"][1]["covariance_from_guess"][4][4], 16);
   EXPECT_EQ(keys_of(alignment["pairs"][0]),
             (std::vector<std::string>{"source", "target", "accepted", "stop", "overlap",
                                       "agreement", "rms_m"}));

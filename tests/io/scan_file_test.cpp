@@ -39,6 +39,7 @@ Scan full_scan() {
   Vector6 twist;
   twist << 0.3, -2, 1, 0.1, 1e3, 1e-9;
   scan.world_from_scanner_guess = exp(twist);
+  scan.guess_sigma = {1.0 / 300, 2e-3};
   return scan;
 }
 
@@ -65,6 +66,9 @@ TEST(ScanFile, PlyBringsBackEverythingToTheBit) {
   EXPECT_EQ(back.noise_window.rows, 7u);
   EXPECT_EQ(back.noise_window.columns, 5u);
   EXPECT_EQ(back.world_from_scanner_guess.matrix(), scan.world_from_scanner_guess.matrix());
+  ASSERT_TRUE(back.guess_sigma);
+  EXPECT_EQ(back.guess_sigma->rotation_rad, 1.0 / 300);
+  EXPECT_EQ(back.guess_sigma->translation_m, 2e-3);
 }
 
 TEST(ScanFile, PlyOfPointsAloneBringsBackPointsAlone) {
