@@ -33,7 +33,8 @@ SurfaceResult ssd(const PointCloud& cloud, const SsdOptions& options = {},
                   const Progress& progress = {});
 
 // Likewise, and then afresh through points moved up to creases (bilateral_samples.h): they replace
-// the cloud and `spacing_m`. Standard errors and smoothing lengths stay those of the first fit. Where no points are moved, and in parts, all is as ssd() has it.
+// the cloud and `spacing_m`. Standard errors and smoothing lengths stay those of the first fit.
+// Where no points are moved, and in parts, all is as ssd() has it.
 SurfaceResult ssd_up_to_creases(PointCloud& cloud, std::vector<double>& spacing_m,
                                 const SsdOptions& options = {}, const Progress& progress = {});
 
