@@ -15,6 +15,7 @@ struct FittedSamples {
   std::vector<double> residuals;         // signed distance from the surface
   std::vector<Eigen::Vector3d> normals;  // unit
   std::vector<double> length;            // smoothing length
+  std::vector<double> trust;             // in the sample (ssd_fit.h)
 };
 
 // A fit of least squares rounds off creases, or keeps noise beside them. Averages over neighbours

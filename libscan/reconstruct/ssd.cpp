@@ -87,7 +87,7 @@ Solved solved(const SsdProblem& problem, const SsdFitOptions& options, const Pro
 
 FittedSamples at_samples(const Samples& samples, const Solved& solved) {
   FittedSamples fitted{std::vector<double>(samples.points.size()), samples.normals,
-                       solved.fit.length};
+                       solved.fit.length, solved.fit.trust};
   const SplineField field{solved.grid, solved.fit.solution.coefficients};
   parallel_for(samples.points.size(), [&](std::size_t i) {
     const FieldValue f = evaluate(field, samples.points[i]);

@@ -45,6 +45,7 @@ Case roof(double slope, double length) {
   s.area.assign(s.points.size(), spacing * spacing);
   s.sigma.assign(s.points.size(), sigma);
   result.fit.length.assign(s.points.size(), fitted_length);
+  result.fit.trust.assign(s.points.size(), 1.0);
   return result;
 }
 
@@ -79,6 +80,18 @@ TEST(BilateralSamples, GoToACreaseThatTheFitRoundsOff) {
 TEST(BilateralSamples, StayWhereThereIsNoiseAlone) {
   Case plane = roof(0, 0);
   plane.fit.length.assign(plane.fit.length.size(), 8 * spacing);
+  EXPECT_FALSE(bilateral_samples(plane.samples, plane.fit));
+}
+
+// Every 50th sample lies 30 sigma off, where the fit rightly leaves it: its residual is no loss.
+TEST(BilateralSamples, StayWhereTheFitLeavesStraysBehind) {
+  Case plane = roof(0, 0);
+  plane.fit.length.assign(plane.fit.length.size(), 8 * spacing);
+  for (std::size_t i = 0; i < plane.samples.points.size(); i += 50) {
+    plane.samples.points[i][2] += 30 * sigma;
+    plane.fit.residuals[i] += 30 * sigma;
+    plane.fit.trust[i] = 1e-4;
+  }
   EXPECT_FALSE(bilateral_samples(plane.samples, plane.fit));
 }
 
