@@ -147,7 +147,7 @@ Action reconstruct_command(CommandLine& line) {
               "ssd: most, GiB; what needs more is solved part by part and blended");
   line.option("--poses", arguments->poses,
               "a pose for each input, in their order; an alignment.json tells their errors, too");
-  line.flag("--sharp", arguments->sharp, "put edges and corners back; for points of little noise");
+  line.flag("--sharp", arguments->sharp, "put edges and corners back; amid noise by ssd");
   line.flag("--quads", arguments->quads,
             "a surface of quads, for ssd, mls, rbf and range-fusion; not for .stl");
   line.length("--trim", arguments->trim_m, "remove surface farther than this from every point");

@@ -18,13 +18,16 @@
 namespace scan {
 namespace {
 
-SurfaceResult surface_by(ReconstructMethod method, const PreparedPoints& points,
+// With `sharp` the points may move.
+SurfaceResult surface_by(ReconstructMethod method, PreparedPoints& points,
                          const ReconstructOptions& options, const Progress& progress) {
   switch (method) {
     case ReconstructMethod::automatic:
       break;  // chosen before
     case ReconstructMethod::ssd:
-      return ssd(points.cloud, options.ssd, progress);
+      return options.sharp
+                 ? ssd_up_to_creases(points.cloud, points.spacing_m, options.ssd, progress)
+                 : ssd(points.cloud, options.ssd, progress);
     case ReconstructMethod::poisson:
       return poisson(points.cloud);
     case ReconstructMethod::mls:
@@ -100,7 +103,7 @@ SurfaceResult reconstruct(const PointCloud& cloud, std::span<const Eigen::Vector
                           const ReconstructOptions& options, const Progress& progress) {
   const Stopwatch watch;
   if (progress) progress("points", 0);
-  const PreparedPoints points = prepare_points(cloud, viewpoints);
+  PreparedPoints points = prepare_points(cloud, viewpoints);
   MethodChoice choice{.method = options.method, .reason = "asked for"};
   if (options.method == ReconstructMethod::automatic) choice = choose_method(points);
   require_extent(points.cloud, choice.method);

@@ -42,7 +42,9 @@ struct ReconstructOptions {
   MlsOptions mls;
   RbfOptions rbf;
   RangeFusionOptions range_fusion;
-  bool sharp = false;  // edges and corners put back (sharp_features.h)
+  // Edges and corners put back (sharp_features.h); by SSD the points moved up to them before, where
+  // these scatter too much for that (bilateral_samples.h).
+  bool sharp = false;
   bool quads = false;  // the dual surface (dual_mesh.h), for methods that cut one out of cells
 };
 

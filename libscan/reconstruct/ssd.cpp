@@ -8,6 +8,8 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/median.h"
+#include "libscan/core/parallel.h"
+#include "libscan/reconstruct/bilateral_samples.h"
 #include "libscan/reconstruct/isosurface.h"
 #include "libscan/reconstruct/local_smoothing.h"
 #include "libscan/reconstruct/ssd_parts.h"
@@ -70,11 +72,53 @@ int surface_depth(int finest, const SsdOptions& options) {
   return std::min(options.depth, finest + 1);
 }
 
+// A function and its cells.
+struct Solved {
+  OctreeGrid grid;
+  SsdFit fit;
+};
+
+Solved solved(const SsdProblem& problem, const SsdFitOptions& options, const Progress& progress) {
+  Solved result{make_octree_grid(problem.samples.points, problem.depths, problem.complete_depth),
+                {}};
+  result.fit = fit_surface(result.grid, problem.samples, options, progress);
+  return result;
+}
+
+FittedSamples at_samples(const Samples& samples, const Solved& solved) {
+  FittedSamples fitted{std::vector<double>(samples.points.size()), samples.normals,
+                       solved.fit.length, solved.fit.trust};
+  const SplineField field{solved.grid, solved.fit.solution.coefficients};
+  parallel_for(samples.points.size(), [&](std::size_t i) {
+    const FieldValue f = evaluate(field, samples.points[i]);
+    const double slope = f.gradient.norm();
+    if (!(slope > 0)) return;
+    fitted.residuals[i] = f.value / slope;
+    fitted.normals[i] = f.gradient / slope;
+  });
+  return fitted;
+}
+
+// Once more, through samples moved up to creases, if any are. The lengths stay.
+std::optional<Samples> solve_up_to_creases(const SsdProblem& problem, const SsdFitOptions& options,
+                                           Solved& all, const Progress& progress) {
+  std::optional<Samples> moved =
+      bilateral_samples(problem.samples, at_samples(problem.samples, all));
+  if (!moved) return moved;
+  std::vector<double> length = std::move(all.fit.length);
+  all = {};
+  all = solved({*moved, problem.depths, problem.complete_depth, problem.surface_depth}, options,
+               progress);
+  all.fit.length = std::move(length);
+  return moved;
+}
+
 SurfaceResult at_once(const SsdProblem& problem, const SsdFitOptions& fit_options,
-                      const SsdOptions& options, const Progress& progress) {
-  const OctreeGrid grid =
-      make_octree_grid(problem.samples.points, problem.depths, problem.complete_depth);
-  const SsdFit fit = fit_surface(grid, problem.samples, fit_options, progress);
+                      const SsdOptions& options, std::optional<Samples>* moved,
+                      const Progress& progress) {
+  Solved all = solved(problem, fit_options, progress);
+  if (moved) *moved = solve_up_to_creases(problem, fit_options, all, progress);
+  const auto& [grid, fit] = all;
   if (progress) progress("surface", 0);
   const int depth = surface_depth(grid.finest_depth(), options);
   SurfaceResult result = world_result(zero_level_set({grid, fit.solution.coefficients}, depth),
@@ -110,6 +154,30 @@ SurfaceResult in_parts(const SsdProblem& problem, int split, const SsdFitOptions
   return result;
 }
 
+SurfaceResult surface_through(const Samples& samples, const SsdOptions& options,
+                              std::optional<Samples>* moved, const Progress& progress) {
+  const Stopwatch watch;
+  const int complete_depth = std::min(most_complete_depth, options.depth);
+  const std::vector<int> depths = sample_depths(samples, complete_depth, options.depth);
+  if (progress) progress("octree", 0);
+  const int finest = std::max(complete_depth, *std::max_element(depths.begin(), depths.end()));
+  const SsdProblem problem{samples, depths, complete_depth, surface_depth(finest, options)};
+  const SsdFitOptions fit_options{.length = options.smoothing_length_m / samples.box.side_m,
+                                  .relative_residual = options.relative_residual,
+                                  .max_iterations = options.max_iterations};
+  const int split = needed_split(problem, options.memory_gib);
+  SurfaceResult result = split == 0 ? at_once(problem, fit_options, options, moved, progress)
+                                    : in_parts(problem, split, fit_options, options, progress);
+  result.finest_cell_m = samples.box.side_m / (1 << surface_depth(result.depth, options));
+  result.sigma_m = samples.box.side_m * median(samples.sigma);
+  result.smoothing_length_m *= samples.box.side_m;
+  result.invalid_points = samples.invalid_points;
+  result.outlying_points = samples.outlying_points;
+  result.cost.seconds = watch.seconds();
+  if (progress) progress("surface", 1);
+  return result;
+}
+
 }  // namespace
 
 void check(const SsdOptions& options) {
@@ -126,26 +194,23 @@ void check(const SsdOptions& options) {
 
 SurfaceResult ssd(const PointCloud& cloud, const SsdOptions& options, const Progress& progress) {
   check(options);
-  const Stopwatch watch;
-  const Samples samples = prepare_samples(cloud, options.sigma_m);
-  const int complete_depth = std::min(most_complete_depth, options.depth);
-  const std::vector<int> depths = sample_depths(samples, complete_depth, options.depth);
-  if (progress) progress("octree", 0);
-  const int finest = std::max(complete_depth, *std::max_element(depths.begin(), depths.end()));
-  const SsdProblem problem{samples, depths, complete_depth, surface_depth(finest, options)};
-  const SsdFitOptions fit_options{.length = options.smoothing_length_m / samples.box.side_m,
-                                  .relative_residual = options.relative_residual,
-                                  .max_iterations = options.max_iterations};
-  const int split = needed_split(problem, options.memory_gib);
-  SurfaceResult result = split == 0 ? at_once(problem, fit_options, options, progress)
-                                    : in_parts(problem, split, fit_options, options, progress);
-  result.finest_cell_m = samples.box.side_m / (1 << surface_depth(result.depth, options));
-  result.sigma_m = samples.box.side_m * median(samples.sigma);
-  result.smoothing_length_m *= samples.box.side_m;
-  result.invalid_points = samples.invalid_points;
-  result.outlying_points = samples.outlying_points;
-  result.cost.seconds = watch.seconds();
-  if (progress) progress("surface", 1);
+  return surface_through(prepare_samples(cloud, options.sigma_m), options, nullptr, progress);
+}
+
+SurfaceResult ssd_up_to_creases(PointCloud& cloud, std::vector<double>& spacing_m,
+                                const SsdOptions& options, const Progress& progress) {
+  check(options);
+  std::optional<Samples> moved;
+  SurfaceResult result =
+      surface_through(prepare_samples(cloud, options.sigma_m), options, &moved, progress);
+  if (!moved) return result;
+  cloud = {};
+  spacing_m.clear();
+  for (std::size_t i = 0; i < moved->points.size(); ++i) {
+    cloud.points.push_back(moved->box.to_world(moved->points[i]));
+    spacing_m.push_back(moved->box.side_m * std::sqrt(moved->area[i]));
+  }
+  cloud.normals = std::move(moved->normals);
   return result;
 }
 

@@ -32,4 +32,10 @@ void check(const SsdOptions& options);
 SurfaceResult ssd(const PointCloud& cloud, const SsdOptions& options = {},
                   const Progress& progress = {});
 
+// Likewise, and then afresh through points moved up to creases (bilateral_samples.h): they replace
+// the cloud and `spacing_m`. Standard errors and smoothing lengths stay those of the first fit.
+// Where no points are moved, and in parts, all is as ssd() has it.
+SurfaceResult ssd_up_to_creases(PointCloud& cloud, std::vector<double>& spacing_m,
+                                const SsdOptions& options = {}, const Progress& progress = {});
+
 }  // namespace scan

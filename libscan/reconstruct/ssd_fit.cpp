@@ -115,7 +115,10 @@ class Fit {
       solution.stop = SolveStop::converged;
   }
 
-  SsdFit take() { return std::move(result_); }
+  SsdFit take() {
+    result_.trust = std::move(trust_);
+    return std::move(result_);
+  }
 
  private:
   // In step with the cells of level l, and on past the finest level.

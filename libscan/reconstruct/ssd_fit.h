@@ -11,6 +11,7 @@ namespace scan {
 struct SsdFit {
   SsdSolution solution;
   std::vector<double> length;  // smoothing length at each sample, unit cube
+  std::vector<double> trust;   // in each sample, see below
 };
 
 struct SsdFitOptions {
