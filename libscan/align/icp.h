@@ -8,8 +8,8 @@
 //
 // No parameter bears a unit: partners must lie within the reach of the target's local fits, and a
 // Welsch loss whose scale follows the residuals, narrowing in steps (graduated non-convexity, Yang
-// et al. 2020), settles which count. A rest rougher than the scans, or that points over the target's
-// surface contradict, is sought anew, gates wider.
+// et al. 2020), settles which count. A rest rougher than the scans, or that points over the
+// target's surface contradict, is sought anew, gates wider.
 #pragma once
 
 #include <functional>

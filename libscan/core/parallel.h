@@ -40,7 +40,8 @@ void parallel_for(std::size_t count, Body&& body, std::size_t chunk = 64) {
   });
 }
 
-// Ascending. Equal keys are one like the other, so the result is the same for any number of threads.
+// Ascending. Equal keys are one like the other, so the result is the same for any number of
+// threads.
 void parallel_sort(std::span<std::uint64_t> keys);
 
 // Sum of chunk_sum(begin, end) over the same chunks, added in their order: the same bits for any

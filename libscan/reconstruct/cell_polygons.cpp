@@ -60,8 +60,7 @@ CellPolygons cell_polygons(const std::array<double, 8>& values) {
   for (const auto& corners : face_corners) {
     const FaceCrossings at = crossings_of(corners, values);
     const bool swap = at.count == 2 && inside_is_joined(corners, values);
-    for (int i = 0; i < at.count; ++i)
-      next[at.enter[i]] = at.leave[swap ? 1 - i : i];
+    for (int i = 0; i < at.count; ++i) next[at.enter[i]] = at.leave[swap ? 1 - i : i];
   }
   CellPolygons polygons;
   int used = 0;

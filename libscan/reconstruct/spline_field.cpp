@@ -88,7 +88,7 @@ bool has_finer_functions(const SplineField& field, const FieldCell& cell) {
 
 FieldValue evaluate(const FieldCell& cell, const Eigen::Vector3d& in_cell) {
   const SplineWeights<double> x = spline_weights(in_cell[0]), y = spline_weights(in_cell[1]),
-                      z = spline_weights(in_cell[2]);
+                              z = spline_weights(in_cell[2]);
   FieldValue f;
   for (int i = 0; i < 27; ++i) {
     const int a = i % 3, b = i / 3 % 3, c = i / 9;

@@ -21,7 +21,8 @@ struct TrueSurface {
 // Of all parts; infinite with a plane.
 Bounds bounds_of(const TrueSurface& surface);
 
-// Where a ray's centre first meets the scene; `object` is -1 (and point NaN) for a ray into nothing.
+// Where a ray's centre first meets the scene; `object` is -1 (and point NaN) for a ray into
+// nothing.
 struct RayTruth {
   Eigen::Vector3d point_in_scanner =
       Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -67,7 +67,8 @@ double white_share(const Scene& scene, const Hit& hit, double cosine) {
   const auto* matt = std::get_if<Lambert>(&material.bsdf);
   if (matt && std::holds_alternative<PlainTexture>(material.texture)) return matt->albedo;
   const Eigen::Vector3d back(std::sqrt(std::max(0.0, 1 - cosine * cosine)), 0, cosine);
-  return std::numbers::pi * evaluate(bsdf_at(scene, hit.object, hit.triangle, hit.point), back, back);
+  return std::numbers::pi *
+         evaluate(bsdf_at(scene, hit.object, hit.triangle, hit.point), back, back);
 }
 
 }  // namespace

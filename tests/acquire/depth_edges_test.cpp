@@ -38,7 +38,8 @@ TEST(NearDepthEdge, IsTheMarginOnBothSidesOfAStep) {
   const auto near = near_depth_edge(disparity, 4);
   // Pairs one and two columns apart straddle the step: columns 28 to 31 are its edge.
   for (int column = 0; column < 60; ++column)
-    EXPECT_EQ(near[disparity.index(column, 20)] != 0, column >= 28 - 4 && column <= 31 + 4) << column;
+    EXPECT_EQ(near[disparity.index(column, 20)] != 0, column >= 28 - 4 && column <= 31 + 4)
+        << column;
 }
 
 TEST(NearDepthEdge, SurroundsHolesButNotSingleMisses) {

@@ -42,8 +42,9 @@ TEST(Completion, OffersCommandsOptionsAndTheirWords) {
 
 // The help is made by the parser itself, so it is what the program takes.
 TEST(Completion, HasTheOptionsOfEachCommandsHelp) {
-  for (const char* command : {"run", "simulate", "calibrate", "acquire", "align", "reconstruct", "verify",
-                              "tradeoff", "report", "info", "convert", "schema", "version"}) {
+  for (const char* command :
+       {"run", "simulate", "calibrate", "acquire", "align", "reconstruct", "verify", "tradeoff",
+        "report", "info", "convert", "schema", "version"}) {
     std::string help = run_scan({command, "--help"}).out;
     help = help.substr(0, help.find("Example:"));
     EXPECT_EQ(long_options(offered(std::string("scan ") + command + " --")), long_options(help))

@@ -57,5 +57,7 @@ TEST(MeshSearch, AgreesWithCgal) {
 }  // namespace
 }  // namespace scan
 #else
-TEST(MeshSearch, AgreesWithCgal) { GTEST_SKIP() << "built with LIBSCAN_WITH_CGAL=OFF"; }
+TEST(MeshSearch, AgreesWithCgal) {
+  GTEST_SKIP() << "built with LIBSCAN_WITH_CGAL=OFF";
+}
 #endif

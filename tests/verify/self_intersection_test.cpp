@@ -17,7 +17,9 @@ double crossings(const Mesh& mesh) {
 
 class SelfIntersection : public testing::Test {
 #ifndef LIBSCAN_WITH_CGAL
-  void SetUp() override { GTEST_SKIP() << "built with LIBSCAN_WITH_CGAL=OFF"; }
+  void SetUp() override {
+    GTEST_SKIP() << "built with LIBSCAN_WITH_CGAL=OFF";
+  }
 #endif
 };
 
