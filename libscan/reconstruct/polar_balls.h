@@ -6,17 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "libscan/reconstruct/polar_labels.h"
 #include "libscan/reconstruct/power_diagram.h"
 
 namespace scan {
-
-// Two balls and how surely they lie on the same side of the surface, or on different sides; 0: they
-// meet without saying.
-struct PolarTie {
-  std::uint32_t first = 0, second = 0;
-  double certainty = 0;  // at most 1
-  bool is_same_side = true;
-};
 
 struct PolarBalls {
   std::vector<Ball> balls;
@@ -32,15 +25,5 @@ struct PolarBalls {
 // reconstruction from noisy samples" (2006).
 PolarBalls polar_balls(std::span<const Eigen::Vector3d> points, std::span<const double> spacing,
                        double least_radius);
-
-// How surely two balls lie on the same side: the cosine of the angle between their radii where
-// their spheres meet, 0 at least. Balls of two sides of a surface meet at its points only.
-double same_side_certainty(const Ball& a, const Ball& b);
-
-// Whether each ball lies inside, from the outer ones on, the surest next (ibid., section 3.3).
-// Balls that no tie reaches lie beyond a layer of points that scatter: on the other side than those
-// that they meet.
-std::vector<char> label_inside(std::size_t balls, std::span<const PolarTie> ties,
-                               std::span<const char> is_outer);
 
 }  // namespace scan

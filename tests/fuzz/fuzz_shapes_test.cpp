@@ -3,9 +3,6 @@
 // Broken copies of clouds and meshes.
 #include <gtest/gtest.h>
 
-#include <bit>
-
-#include "libscan/io/byte_order.h"
 #include "libscan/io/image_file.h"
 #include "libscan/io/mesh_import.h"
 #include "libscan/io/pcd.h"
@@ -13,6 +10,7 @@
 #include "libscan/io/scan_file.h"
 #include "libscan/io/surface_file.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/io/gltf_tetrahedron.h"
 
 namespace scan::test {
 namespace {
@@ -108,45 +106,13 @@ TEST(Fuzz, StlObjOff) {
   });
 }
 
-// A tetrahedron's buffer and document, as mesh_import_test.cpp has them.
-std::string gltf_buffer() {
-  const Mesh mesh = tetrahedron();
-  std::string bytes;
-  for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t corner : triangle)
-      for (const double x : mesh.vertices[corner])
-        store(bytes, static_cast<float>(x), std::endian::little);
-  for (std::uint16_t i = 0; i < 12; ++i) store(bytes, i, std::endian::little);
-  return bytes;
-}
-
-std::string gltf_document(const std::string& uri) {
-  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
-         R"("nodes":[{"children":[1],"translation":[10,0,0]},{"mesh":0}],)"
-         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
-         R"("accessors":[{"bufferView":0,"componentType":5126,"count":12,"type":"VEC3"},)"
-         R"({"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],)"
-         R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":144},)"
-         R"({"buffer":0,"byteOffset":144,"byteLength":24}],"buffers":[{)" +
-         uri + R"("byteLength":168}]})";
-}
-
 TEST(Fuzz, Gltf) {
   const TemporaryFolder folder;
   const Reader read = [](const auto& path) { expect_sound(read_gltf(path).mesh); };
   write_file(folder / "a.bin", gltf_buffer());
   write_file(folder / "a.gltf", gltf_document(R"("uri":"a.bin",)"));
   fuzz(folder / "a.gltf", read);
-  std::string json = gltf_document("");
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::string bytes = "glTF";
-  const auto put = [&](std::size_t number) {
-    store(bytes, static_cast<std::uint32_t>(number), std::endian::little);
-  };
-  put(2), put(12 + 8 + json.size() + 8 + gltf_buffer().size());
-  put(json.size()), bytes += "JSON" + json;
-  put(gltf_buffer().size()), bytes += std::string("BIN\0", 4) + gltf_buffer();
-  write_file(folder / "a.glb", bytes);
+  write_file(folder / "a.glb", glb());
   fuzz(folder / "a.glb", read);
 }
 

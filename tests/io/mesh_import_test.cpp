@@ -7,48 +7,11 @@
 #include <bit>
 
 #include "libscan/io/byte_order.h"
+#include "tests/io/gltf_tetrahedron.h"
 #include "tests/io/io_test_support.h"
 
 namespace scan {
 namespace {
-
-// A tetrahedron whose faces carry their own copies of the corners, as exporters write it, in a node
-// that is moved by (10, 0, 0).
-std::string buffer() {
-  const float corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-  std::string bytes;
-  for (const auto& face : faces)
-    for (const int corner : face)
-      for (const float x : corners[corner]) store(bytes, x, std::endian::little);
-  for (std::uint16_t i = 0; i < 12; ++i) store(bytes, i, std::endian::little);
-  return bytes;
-}
-
-std::string document(const std::string& uri) {
-  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
-         R"("nodes":[{"children":[1],"translation":[10,0,0]},{"mesh":0}],)"
-         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
-         R"("accessors":[{"bufferView":0,"componentType":5126,"count":12,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},)"
-         R"({"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],)"
-         R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":144},{"buffer":0,"byteOffset":144,"byteLength":24}],)"
-         R"("buffers":[{)" +
-         uri + R"("byteLength":168}]})";
-}
-
-std::string glb() {
-  std::string json = document("");
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  const std::string binary = buffer();
-  std::string bytes = "glTF";
-  const auto put = [&](std::size_t number) {
-    store(bytes, static_cast<std::uint32_t>(number), std::endian::little);
-  };
-  put(2), put(12 + 8 + json.size() + 8 + binary.size());
-  put(json.size()), bytes += "JSON" + json;
-  put(binary.size()), bytes += std::string("BIN\0", 4) + binary;
-  return bytes;
-}
 
 void expect_tetrahedron(const Mesh& mesh) {
   EXPECT_EQ(mesh.vertices.size(), 4u);
@@ -61,8 +24,8 @@ TEST(Gltf, ReadsBinaryAndTextWithNodesAndWelds) {
   const TemporaryFolder folder;
   write_file(folder / "a.glb", glb());
   expect_tetrahedron(read_gltf(folder / "a.glb").mesh);
-  write_file(folder / "a.bin", buffer());
-  write_file(folder / "a.gltf", document(R"("uri":"a.bin",)"));
+  write_file(folder / "a.bin", gltf_buffer());
+  write_file(folder / "a.gltf", gltf_document(R"("uri":"a.bin",)"));
   expect_tetrahedron(read_gltf(folder / "a.gltf").mesh);
   EXPECT_TRUE(read_gltf(folder / "a.gltf").corners.empty());
 }
@@ -95,19 +58,19 @@ TEST(Gltf, ReadsTextureCoordinates) {
 
 TEST(Gltf, RefusesVerticesThatAreNotFinite) {
   const TemporaryFolder folder;
-  std::string bytes = buffer();
+  std::string bytes = gltf_buffer();
   bytes.replace(0, 4, std::string("\x00\x00\xc0\x7f", 4));  // NaN
   write_file(folder / "a.bin", bytes);
-  write_file(folder / "a.gltf", document(R"("uri":"a.bin",)"));
+  write_file(folder / "a.gltf", gltf_document(R"("uri":"a.bin",)"));
   EXPECT_NE(error_of([&] { read_gltf(folder / "a.gltf"); }).find("vertex 0 is not finite"),
             std::string::npos);
 }
 
 TEST(Gltf, RefusesPromisesThatDoNotHold) {
   const TemporaryFolder folder;
-  write_file(folder / "a.bin", buffer());
+  write_file(folder / "a.bin", gltf_buffer());
   const auto said = [&](const std::string& from, const std::string& to) {
-    std::string text = document(R"("uri":"a.bin",)");
+    std::string text = gltf_document(R"("uri":"a.bin",)");
     text.replace(text.find(from), from.size(), to);
     write_file(folder / "a.gltf", text);
     return error_of([&] { read_gltf(folder / "a.gltf"); });
