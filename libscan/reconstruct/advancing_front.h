@@ -9,7 +9,8 @@
 
 namespace scan {
 
-// Triangles over the points; vertices are the points themselves, in their order.
+// Cohen-Steiner and Da 2004. Triangles over the points; vertices are the points themselves, in
+// their order, which also decides between edges of one radius.
 Mesh advancing_front(std::span<const Eigen::Vector3d> points);
 
 }  // namespace scan

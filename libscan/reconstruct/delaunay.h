@@ -8,10 +8,8 @@
 namespace scan {
 
 // Cohen-Steiner and Da 2004. Interpolates the points; each component is turned to follow the
-// normals where there are any. The mesh need not be closed. CGAL breaks ties between edges of one
-// radius by their addresses: after other work in one process a few triangles may differ. Throws
-// scan::Error: input for fewer than 4 finite points, computation for an empty result, usage if
-// libscan was built without CGAL.
+// normals where there are any. The mesh need not be closed. Throws scan::Error: input for fewer
+// than 4 finite points, computation for an empty result, usage if libscan was built without CGAL.
 SurfaceResult delaunay(const PointCloud& cloud);
 
 }  // namespace scan
