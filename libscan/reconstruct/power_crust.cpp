@@ -29,6 +29,8 @@ constexpr std::size_t fewest_for_sigma = 16;  // estimate_sigma()
 // Of a corner's equations: what rounding has made of equal rows is below 1e-15 times the balls'
 // distances by the spacing.
 constexpr double least_singular_share = 1e-6;
+// Of those whose determinant is above, no singular value is below two thirds of this.
+constexpr double safe_determinant = 1e-5;
 constexpr double short_edge_spacings = 0.1;
 
 double scatter_of(const PointCloud& cloud) {
@@ -36,31 +38,59 @@ double scatter_of(const PointCloud& cloud) {
   return cloud.size() < fewest_for_sigma ? 0 : estimate_sigma(cloud.points);
 }
 
-// Where four balls have equal power; where rounding leaves that open, along planes that coincide,
-// the place nearest to a point that one of the balls touches.
-Eigen::Vector3d power_centre(const std::array<std::uint32_t, 4>& corner, const PolarBalls& polar) {
-  const Ball& first = polar.balls[corner[0]];
+// Where four balls have equal power: a unit row for each after the first.
+struct EqualPower {
   Eigen::Matrix3d rows;
-  Eigen::Vector3d right;
+  Eigen::Vector3d right;  // about the first one's centre
+};
+
+EqualPower equal_power(const std::array<Ball, 4>& balls) {
+  EqualPower equations;
   for (int k = 0; k < 3; ++k) {
-    const Ball& other = polar.balls[corner[k + 1]];
+    const Ball &first = balls[0], &other = balls[k + 1];
     const Eigen::Vector3d apart = other.centre - first.centre;
     const double length = apart.norm();
-    rows.row(k) = apart / length;
-    right[k] = (apart.squaredNorm() - other.radius * other.radius + first.radius * first.radius) /
-               (2 * length);
+    equations.rows.row(k) = apart / length;
+    equations.right[k] =
+        (apart.squaredNorm() - other.radius * other.radius + first.radius * first.radius) /
+        (2 * length);
   }
+  return equations;
+}
+
+// How far a place is from the farthest of the balls' surfaces.
+double off_surfaces(const std::array<Ball, 4>& balls, const Eigen::Vector3d& place) {
+  double off = 0;
+  for (const Ball& ball : balls)
+    off = std::max(off, std::abs((place - ball.centre).norm() - ball.radius));
+  return off;
+}
+
+// Where four balls have equal power. Of planes that nearly coincide it cannot be told whether they
+// do but for rounding, and meet anywhere, or where they say, as those of balls along a straight
+// axis: there it is the place nearest to all four surfaces, of the latter and of those nearest to
+// the points that the balls touch.
+Eigen::Vector3d power_centre(const std::array<std::uint32_t, 4>& corner, const PolarBalls& polar) {
+  const std::array<Ball, 4> balls{polar.balls[corner[0]], polar.balls[corner[1]],
+                                  polar.balls[corner[2]], polar.balls[corner[3]]};
+  const auto [rows, right] = equal_power(balls);
+  if (std::abs(rows.determinant()) > safe_determinant)
+    return balls[0].centre + rows.inverse() * right;
   Eigen::JacobiSVD<Eigen::Matrix3d> svd(rows, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  svd.setThreshold(least_singular_share);
-  Eigen::Vector3d least = Eigen::Vector3d::Constant(unlimited_m), place = least;
-  for (const std::uint32_t ball : corner) {
-    const Eigen::Vector3d near = polar.touched[ball] - first.centre;
-    const Eigen::Vector3d step = svd.solve(right - rows * near);
-    if (!(step.squaredNorm() < least.squaredNorm())) continue;
-    least = step;
-    place = polar.touched[ball] + step;
+  double least = unlimited_m;
+  Eigen::Vector3d found = polar.touched[corner[0]];
+  for (const double singular_share : {0.0, least_singular_share}) {
+    svd.setThreshold(singular_share);
+    for (const std::uint32_t ball : corner) {
+      const Eigen::Vector3d& touched = polar.touched[ball];
+      const Eigen::Vector3d place = touched + svd.solve(right - rows * (touched - balls[0].centre));
+      const double off = off_surfaces(balls, place);
+      if (!(off < least)) continue;
+      least = off;
+      found = place;
+    }
   }
-  return place;
+  return found;
 }
 
 // The faces between cells inside and cells outside, in triangles. What has no bounds lies outside.
