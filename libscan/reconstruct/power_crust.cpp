@@ -125,32 +125,36 @@ struct Edge {
   }
 };
 
-std::vector<Edge> edges_of(const Mesh& mesh) {
+// Those no longer than the limit, the shortest first.
+std::vector<Edge> short_edges(const CollapsingMesh& mesh, std::size_t triangles, double limit_m) {
   std::vector<Edge> edges;
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k)
-      if (t[k] < t[(k + 1) % 3])
-        edges.push_back(
-            {(mesh.vertices[t[k]] - mesh.vertices[t[(k + 1) % 3]]).norm(), t[k], t[(k + 1) % 3]});
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    if (!mesh.is_alive(t)) continue;
+    const Triangle& c = mesh.triangle(t);
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = c[k], b = c[(k + 1) % 3];
+      if (a > b) continue;
+      const double length_m = (mesh.at(a) - mesh.at(b)).norm();
+      if (length_m <= limit_m) edges.push_back({length_m, a, b});
+    }
+  }
   std::sort(edges.begin(), edges.end());
   return edges;
 }
 
 // Cells' faces have edges of any length, many of none: the short ones go, the shortest first. What
 // goes makes way for others.
-Mesh without_short_edges(Mesh mesh, double limit_m) {
-  for (std::size_t before = 0; before != mesh.triangles.size();) {
-    before = mesh.triangles.size();
-    CollapsingMesh left(mesh);
-    for (const Edge& edge : edges_of(mesh)) {
-      if (edge.length_m > limit_m) break;
+Mesh without_short_edges(const Mesh& mesh, double limit_m) {
+  CollapsingMesh left(mesh);
+  for (std::size_t before = 0; before != left.alive();) {
+    before = left.alive();
+    for (const Edge& edge : short_edges(left, mesh.triangles.size(), limit_m)) {
       if (left.around(edge.a).empty() || left.around(edge.b).empty()) continue;
       const Eigen::Vector3d middle = (left.at(edge.a) + left.at(edge.b)) / 2;
       if (left.may_collapse(edge.a, edge.b, middle)) left.collapse(edge.a, edge.b, middle);
     }
-    mesh = left.mesh();
   }
-  return mesh;
+  return left.mesh();
 }
 
 }  // namespace

@@ -51,6 +51,19 @@ TEST(PowerCrust, IsNearARing) {
   EXPECT_GT(volume_m3(result.surface), 0);  // faces outwards
 }
 
+// Outside it are balls along a straight axis, whose planes of equal power nearly coincide. Uniform
+// samples n to the area A leave a disc of radius d empty near one of them with a chance of
+// exp(-n pi d^2 / A): with n pi d^2 / A = ln n + 5 near hardly any. Limit as for IsNearARing.
+TEST(PowerCrust, HasNoSpikesAlongAStraightAxis) {
+  constexpr double r = 0.35, n = 30000, area = 4 * std::numbers::pi * std::numbers::pi * r;
+  const double spacing = std::sqrt(area / n);
+  const SurfaceResult result = crust_of(torus_cloud(30000), spacing);
+  const double empty2 = area * (std::log(n) + 5) / (n * std::numbers::pi);
+  const double limit = empty2 / (2 * r) + spacing * spacing / (8 * r);
+  for (const auto& x : result.surface.vertices)
+    EXPECT_NEAR(std::hypot(std::hypot(x[0], x[1]) - 1, x[2]), r, limit);
+}
+
 // 11 x 11 points on each face of a cube: hundreds lie in one plane and on one sphere. Between the
 // points, 0.71 from the nearest, a ball of radius r comes short of its face by 0.71^2 / 2 r. Inside
 // they are of radius 1 beside an edge and of 3 where that is three away; outside they are larger.
