@@ -102,7 +102,7 @@ Mesh crust_of(const PowerDiagram& diagram, const PolarBalls& polar,
   Mesh all{.vertices = std::vector<Eigen::Vector3d>(diagram.corners.size())};
   for (const PowerFace& face : diagram.faces) {
     if (inside(face.first) == inside(face.second)) continue;
-    const auto& c = face.corners;
+    const std::span<const std::uint32_t> c = diagram.corners_of(face);
     for (std::size_t k = 2; k < c.size(); ++k)
       if (inside(face.first))
         all.triangles.push_back({c[0], c[k - 1], c[k]});

@@ -78,19 +78,36 @@ std::vector<NumberedCell<Triangulation>> numbered_cells(const Triangulation& tri
   return cells;
 }
 
-// The cells around an edge, beginning with the lowest.
-std::vector<Number> cells_around(const Regular& triangulation, const Regular::Edge& edge) {
-  std::vector<Number> loop;
-  Regular::Cell_circulator cell = triangulation.incident_cells(edge);
-  const Regular::Cell_circulator begin = cell;
+// Of a cell's edges, by which of its corners they join.
+std::uint8_t edge_bit(int one, int other) {
+  constexpr std::array<std::array<int, 4>, 4> place{
+      {{0, 0, 1, 2}, {0, 0, 3, 4}, {1, 3, 0, 5}, {2, 4, 5, 0}}};
+  return static_cast<std::uint8_t>(1 << place[one][other]);
+}
+
+// Adds the face of the edge between two corners of a cell and notes it in all cells around.
+void add_face(const Regular& triangulation, const Regular::Cell_handle cell, int one, int other,
+              std::vector<std::uint8_t>& seen, PowerDiagram& diagram) {
+  if (seen[cell->info()] & edge_bit(one, other)) return;
+  if (cell->vertex(one)->info() > cell->vertex(other)->info()) std::swap(one, other);
+  const Regular::Vertex_handle first = cell->vertex(one), second = cell->vertex(other);
+  auto& loops = diagram.corners_of_faces;
+  const std::size_t begin = loops.size();
+  bool is_bounded = true;
+  Regular::Cell_circulator around = triangulation.incident_cells(cell, one, other, cell);
+  const Regular::Cell_circulator end = around;
   do {
-    if (triangulation.is_infinite(cell)) return {};
-    loop.push_back(cell->info());
-  } while (++cell != begin);
-  if (edge.first->vertex(edge.second)->info() > edge.first->vertex(edge.third)->info())
-    std::reverse(loop.begin(), loop.end());
-  std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
-  return loop;
+    if (triangulation.is_infinite(around)) {
+      is_bounded = false;
+      continue;
+    }
+    seen[around->info()] |= edge_bit(around->index(first), around->index(second));
+    loops.push_back(around->info());
+  } while (++around != end);
+  if (!is_bounded) loops.resize(begin);
+  const auto loop = loops.begin() + static_cast<std::ptrdiff_t>(begin);
+  std::rotate(loop, std::min_element(loop, loops.end()), loops.end());
+  diagram.faces.push_back({first->info(), second->info(), begin, loops.size()});
 }
 
 }  // namespace
@@ -122,11 +139,11 @@ PowerDiagram power_diagram(std::span<const Ball> balls) {
   diagram.is_unbounded.assign(balls.size(), 0);
   if (triangulation.dimension() < 3) return diagram;
   for (const auto& cell : numbered_cells(triangulation)) diagram.corners.push_back(cell.corners);
-  for (const Regular::Edge& edge : triangulation.finite_edges()) {
-    const Number a = edge.first->vertex(edge.second)->info();
-    const Number b = edge.first->vertex(edge.third)->info();
-    diagram.faces.push_back({std::min(a, b), std::max(a, b), cells_around(triangulation, edge)});
-  }
+  std::vector<std::uint8_t> seen(diagram.corners.size(), 0);
+  for (const auto cell : triangulation.finite_cell_handles())  // neighbours follow, for the cache
+    for (int one = 0; one < 3; ++one)
+      for (int other = one + 1; other < 4; ++other)
+        add_face(triangulation, cell, one, other, seen, diagram);
   std::sort(diagram.faces.begin(), diagram.faces.end(), [](const PowerFace& a, const PowerFace& b) {
     return std::tie(a.first, a.second) < std::tie(b.first, b.second);
   });

@@ -29,8 +29,7 @@ VoronoiCells voronoi_cells(std::span<const Eigen::Vector3d> points);
 // Where the cells of two balls meet: a convex polygon in the plane of equal power.
 struct PowerFace {
   std::uint32_t first = 0, second = 0;  // balls, first < second
-  // Counter-clockwise as the second ball sees them; places may coincide. Empty: unbounded.
-  std::vector<std::uint32_t> corners;
+  std::size_t begin = 0, end = 0;       // of its corners in corners_of_faces; none: unbounded
 };
 
 // The cell of a ball: where |x - centre|^2 - radius^2 is least. Each corner belongs to four cells,
@@ -38,9 +37,16 @@ struct PowerFace {
 // manifold where they are bounded.
 struct PowerDiagram {
   std::vector<std::array<std::uint32_t, 4>>
-      corners;                     // ascending balls, which have equal power there
-  std::vector<PowerFace> faces;    // by first and second
+      corners;                   // ascending balls, which have equal power there
+  std::vector<PowerFace> faces;  // by first and second
+  // Of each face from its lowest on, counter-clockwise as its second ball sees them; places may
+  // coincide.
+  std::vector<std::uint32_t> corners_of_faces;
   std::vector<char> is_unbounded;  // by ball
+
+  std::span<const std::uint32_t> corners_of(const PowerFace& face) const {
+    return std::span(corners_of_faces).subspan(face.begin, face.end - face.begin);
+  }
 };
 
 PowerDiagram power_diagram(std::span<const Ball> balls);

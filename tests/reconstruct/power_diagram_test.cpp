@@ -86,18 +86,19 @@ TEST(PowerDiagram, FacesBelongToTheirTwoBallsAndFaceTheSecond) {
   const PowerDiagram diagram = power_diagram(balls);
   std::size_t bounded = 0;
   for (const PowerFace& face : diagram.faces) {
+    const auto corners = diagram.corners_of(face);
     ASSERT_LT(face.first, face.second);
-    if (face.corners.empty()) {
+    if (corners.empty()) {
       EXPECT_TRUE(diagram.is_unbounded[face.first] && diagram.is_unbounded[face.second]);
       continue;
     }
     ++bounded;
     Eigen::Vector3d twice_area = Eigen::Vector3d::Zero();
     const auto place = [&](std::size_t k) {
-      return corner_of(diagram.corners[face.corners[k % face.corners.size()]], balls);
+      return corner_of(diagram.corners[corners[k % corners.size()]], balls);
     };
-    for (std::size_t k = 0; k < face.corners.size(); ++k) {
-      const auto& corner = diagram.corners[face.corners[k]];
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const auto& corner = diagram.corners[corners[k]];
       EXPECT_EQ(std::count(corner.begin(), corner.end(), face.first), 1);
       EXPECT_EQ(std::count(corner.begin(), corner.end(), face.second), 1);
       twice_area += (place(k) - place(0)).cross(place(k + 1) - place(0));
