@@ -12,27 +12,11 @@
 #include <tuple>
 #include <utility>
 
+#include "libscan/reconstruct/numbered.h"
+
 namespace scan {
 
 using FrontKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-// A vertex or cell with its number in order of making: CGAL compares and hashes such by number,
-// others by address. On that depend which cell shows a facet and how a removed vertex's hole fills.
-template <class Base>
-class Numbered : public Base {
- public:
-  template <class Tds>
-  struct Rebind_TDS {
-    using Other = Numbered<typename Base::template Rebind_TDS<Tds>::Other>;
-  };
-  using Has_timestamp = CGAL::Tag_true;
-  using Base::Base;
-  std::size_t time_stamp() const { return number_; }
-  void set_time_stamp(std::size_t number) { number_ = number; }
-
- private:
-  std::size_t number_ = std::size_t(-1);  // none yet
-};
 
 // An edge of the front as the set of them orders it: CGAL's own is a value and an address, which
 // decides between equal values. Here points decide, by their indices: the edge's two, then the

@@ -44,7 +44,12 @@ PointCloud lattice_on_a_box() {
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j)
       for (int k = 0; k <= n; ++k)
-        if (i % n == 0 || j % n == 0 || k % n == 0) cloud.points.emplace_back(i, j, k);
+        if (i % n == 0 || j % n == 0 || k % n == 0) {
+          const Eigen::Vector3d off(2 * i - n, 2 * j - n, 2 * k - n);
+          const Eigen::Vector3d steep = (off.cwiseAbs().array() == n).select(off, 0);
+          cloud.points.emplace_back(i, j, k);
+          cloud.normals.push_back(steep.normalized());
+        }
   return cloud;
 }
 
@@ -96,7 +101,8 @@ TEST(PowerCrust, IsTheSameWhereverMemoryLies) {
 }
 
 TEST(Poisson, IsTheSameWhereverMemoryLies) {
-  expect_the_same_wherever_memory_lies(poisson, integers_about_a_sphere());
+  expect_the_same_wherever_memory_lies(poisson, lattice_on_a_box());
+  expect_the_same_wherever_memory_lies(poisson, bumpy_cloud(5000, 0.1, 9));
 }
 
 #else
