@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// What keeps CGAL's triangulations (GPL) from going by addresses: for files of libscan::cgal alone.
+// What keeps CGAL's triangulations from going by addresses.
 #pragma once
 
-#include <CGAL/tags.h>
-
 #include <cstddef>
+#include <type_traits>
 
 namespace scan {
 
@@ -19,7 +18,7 @@ class Numbered : public Base {
   struct Rebind_TDS {
     using Other = Numbered<typename Base::template Rebind_TDS<Tds>::Other>;
   };
-  using Has_timestamp = CGAL::Tag_true;
+  using Has_timestamp = std::true_type;
   using Base::Base;
   std::size_t time_stamp() const { return number_; }
   void set_time_stamp(std::size_t number) { number_ = number; }
