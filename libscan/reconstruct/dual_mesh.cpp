@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <unordered_set>
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
@@ -103,24 +102,22 @@ class Placer {
   std::vector<Eigen::Vector3d> normals_;
 };
 
-// The mesh of the polygons: quads first, each along its shorter diagonal unless that is an edge
-// already; what is no quad becomes triangles about its middle.
+// The mesh of the polygons: quads first, each along its shorter diagonal; what is no quad becomes
+// triangles about its middle. No diagonal is another's, or an edge: its cells have but an edge of
+// the grid in common, with one root, and edges join cells with a face in common.
 class Polygons {
  public:
   Polygons(const PiecePolygons& polygons, std::vector<Eigen::Vector3d> places)
       : polygons_(polygons) {
     mesh_.vertices = std::move(places);
-    for_each([&](const std::uint32_t* corner, std::uint32_t size) {
-      for (std::uint32_t k = 0; k < size; ++k)
-        edges_.insert(key(corner[k], corner[(k + 1) % size]));
-    });
   }
 
   Mesh mesh() {
     std::vector<Triangle> others;
     for_each([&](const std::uint32_t* corner, std::uint32_t size) {
-      if (size == 4 && add_quad(corner)) return;
-      if (size == 3)
+      if (size == 4)
+        add_quad(corner);
+      else if (size == 3)
         others.push_back({corner[0], corner[1], corner[2]});
       else
         add_about_middle(corner, size, others);
@@ -143,24 +140,15 @@ class Polygons {
     }
   }
 
-  static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
-    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-  }
-
   double length(std::uint32_t a, std::uint32_t b) const {
     return (mesh_.vertices[a] - mesh_.vertices[b]).norm();
   }
 
-  bool add_quad(const std::uint32_t* c) {
-    int first = length(c[0], c[2]) <= length(c[1], c[3]) ? 0 : 1;
-    if (!edges_.insert(key(c[first], c[first + 2])).second) {
-      first = 1 - first;
-      if (!edges_.insert(key(c[first], c[first + 2])).second) return false;
-    }
+  void add_quad(const std::uint32_t* c) {
+    const int first = length(c[0], c[2]) <= length(c[1], c[3]) ? 0 : 1;
     const std::uint32_t last = c[(first + 3) % 4];
     mesh_.triangles.push_back({c[first], c[first + 1], c[first + 2]});
     mesh_.triangles.push_back({c[first], c[first + 2], last});
-    return true;
   }
 
   void add_about_middle(const std::uint32_t* corner, std::uint32_t size,
@@ -176,7 +164,6 @@ class Polygons {
 
   const PiecePolygons& polygons_;
   Mesh mesh_;
-  std::unordered_set<std::uint64_t> edges_;
   std::vector<std::uint32_t> corner_beside_;
 };
 

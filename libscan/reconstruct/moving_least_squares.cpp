@@ -18,7 +18,11 @@
 namespace scan {
 namespace {
 
-constexpr double widening = 1.5;                  // the support of neighbours may be so much wider
+constexpr double widening = 1.5;  // the support of neighbours may be so much wider
+// Supports reach at least so many times as far as the nearest sample: a fit off the surface weighs
+// 1 - 1/9 of the samples or more that one on it weighs. Else the last few that a support holds
+// decide, which off an edge may all be of one side, whose plane goes on there.
+constexpr double farther = 3;
 constexpr std::size_t probes = 2000;              // samples at which the noise is estimated
 constexpr double narrowest = 2.5, widest = 20.5;  // support, in spacings
 constexpr double hole = 1;                        // left out about a sample, in spacings
@@ -45,27 +49,29 @@ class MlsField {
     return *middle;
   }
 
-  // Samples within `left_out` have no say.
+  // Samples within `left_out` have no say. Where the others contradict one another, the fit goes by
+  // the nearest one's normal.
   std::optional<AlgebraicSphere> sphere(const Eigen::Vector3d& x, std::vector<Neighbour>& found,
                                         double left_out = 0) const {
     const auto nearest = tree_.nearest(x, unlimited_m);
-    const double reach = widening * support_[nearest->index];
-    tree_.within(x, reach, found);
-    std::erase_if(found, [&](const Neighbour& n) { return n.distance2_m2 < left_out * left_out; });
+    const double least = farther * std::sqrt(nearest->distance2_m2);
+    tree_.within(x, std::max(widening * support_[nearest->index], least), found);
+    std::erase_if(found, [&](const Neighbour& n) {
+      return n.distance2_m2 < left_out * left_out || !(weight(n, least) > 0);
+    });
+    if (std::none_of(found.begin(), found.end(), [&](const Neighbour& n) { return weight(n) > 0; }))
+      return std::nullopt;
     SphereSums sums;
-    const Neighbour* first = nullptr;
-    for (const Neighbour& n : found) {
-      const double w = weight(n);
-      if (!(w > 0)) continue;
-      sums.add(w, samples_.points[n.index] - x, samples_.normals[n.index]);
-      if (!first || n.distance2_m2 < first->distance2_m2) first = &n;
+    for (const Neighbour& n : found)
+      sums.add(weight(n, least), samples_.points[n.index] - x, samples_.normals[n.index]);
+    if (!(sums.agreement() < least_agreement)) {
+      const Eigen::Vector3d here = sums.fit()->gradient(Eigen::Vector3d::Zero()).normalized();
+      if (const auto fitted = refit(found, x, least, here, false)) return fitted;
     }
-    if (!first) return std::nullopt;
-    const bool is_wall = sums.agreement() < least_agreement;
-    const Eigen::Vector3d here = is_wall
-                                     ? samples_.normals[first->index]
-                                     : sums.fit()->gradient(Eigen::Vector3d::Zero()).normalized();
-    return refit(found, x, here, is_wall);
+    const auto first = std::min_element(
+        found.begin(), found.end(),
+        [](const Neighbour& a, const Neighbour& b) { return a.distance2_m2 < b.distance2_m2; });
+    return refit(found, x, least, samples_.normals[first->index], true);
   }
 
   double value(const Eigen::Vector3d& x) const {
@@ -90,8 +96,9 @@ class MlsField {
   }
 
  private:
-  double weight(const Neighbour& n) const {
-    const double h = support_[n.index];
+  // With a support of its own, or of `least` if that is wider.
+  double weight(const Neighbour& n, double least = 0) const {
+    const double h = std::max(support_[n.index], least);
     const double t = 1 - n.distance2_m2 / (h * h);
     return t > 0 ? samples_.area[n.index] * t * t * t * t : 0;
   }
@@ -101,13 +108,12 @@ class MlsField {
   // has the other's samples behind it, what is inside is inside both, and if it has them before it,
   // inside either.
   std::optional<AlgebraicSphere> refit(const std::vector<Neighbour>& found,
-                                       const Eigen::Vector3d& x, const Eigen::Vector3d& here,
-                                       bool is_wall) const {
+                                       const Eigen::Vector3d& x, double least,
+                                       const Eigen::Vector3d& here, bool is_wall) const {
     const double tolerance2 = options_.normal_tolerance * options_.normal_tolerance;
     SphereSums near, other;
     for (const Neighbour& n : found) {
-      const double w = weight(n);
-      if (!(w > 0)) continue;
+      const double w = weight(n, least);
       const Eigen::Vector3d offset = samples_.points[n.index] - x;
       const Eigen::Vector3d& normal = samples_.normals[n.index];
       const double difference2 = (normal - here).squaredNorm();

@@ -19,11 +19,12 @@ void check(const MlsOptions& options);
 // Oztireli et al. 2009: exact on planes and spheres, smooth within the support, sharp where normals
 // part. The support is the one of 2.5 to 20 spacings whose surface passes nearest to samples that
 // are left out with their neighbours. Points need unit normals, outward. Where the samples end the
-// surface ends. So does a sheet that starts several spacings off a knife-sharp noisy edge, where
+// surface ends. So does a sheet that starts in a slit or at an edge as narrow as the scatter, where
 // fits disagree which side they are on: of a closed body too the surface may have rims there, which
-// edge_census() counts as boundary edges. Throws scan::Error: usage for options outside their
-// limits, input for fewer than 16 valid points or a cloud without extent, computation for an empty
-// surface.
+// edge_census() counts as boundary edges. Elsewhere a support is no narrower than three times the
+// distance to the nearest sample, so that an edge's fits weigh all its sides. Throws scan::Error:
+// usage for options outside their limits, input for fewer than 16 valid points or a cloud without
+// extent, computation for an empty surface.
 SurfaceResult mls(const PointCloud& cloud, const MlsOptions& options = {},
                   const Progress& progress = {});
 

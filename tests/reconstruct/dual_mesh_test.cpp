@@ -134,6 +134,27 @@ TEST(DualMesh, CutsLessOffEdgesThanTheTriangles) {
   EXPECT_LT(std::abs(0.125 - volume_m3(result.surface)), missing);
 }
 
+// The planes of a piece beside an edge may meet in the next cell, which the surface does not cross:
+// the vertex stays in its own, whose corners are on both sides.
+TEST(DualMesh, HasItsVerticesInCellsThatTheSurfaceCrosses) {
+  const Eigen::Matrix3d turn = exp((Vector6() << 0.3, 0.5, 0.7, 0, 0, 0).finished()).linear();
+  const auto field = [&](const Eigen::Vector3d& u) {
+    return (turn * (u - centre)).lpNorm<Eigen::Infinity>() - 0.25;
+  };
+  for (const int depth : {4, 5, 6}) {
+    SurfaceResult result = level_set(depth, field);
+    const double h = result.finest_cell_m;
+    make_dual(result, somewhere);
+    for (const Eigen::Vector3d& v : result.surface.vertices) {
+      const Eigen::Vector3d low = h * (v / h).array().floor().matrix();
+      int inside = 0;
+      for (int corner = 0; corner < 8; ++corner)
+        inside += field(low + h * Eigen::Vector3d(corner & 1, corner >> 1 & 1, corner >> 2)) < 0;
+      ASSERT_TRUE(inside > 0 && inside < 8) << v.transpose();
+    }
+  }
+}
+
 TEST(DualMesh, EndsWhereTheSurfaceEnds) {
   SurfaceResult result = level_set(5, [](const Eigen::Vector3d& u) {
     return u[0] > 0.5 ? ball(u) : std::numeric_limits<double>::quiet_NaN();
@@ -195,6 +216,9 @@ TEST(DualMesh, GivesMiddlesOfPolygonsWhatACornerKnows) {
   result.finest_cell_m *= 2;
   for (const auto& v : result.surface.vertices) result.standard_error_m.push_back(1 + v[0]);
   make_dual(result, somewhere);
+  const EdgeCensus census = edge_census(result.surface);
+  EXPECT_TRUE(census.watertight);
+  EXPECT_EQ(census.non_manifold_edges + census.non_manifold_vertices, 0u);
   ASSERT_EQ(result.standard_error_m.size(), result.surface.vertices.size());
   std::vector<int> triangles(result.surface.vertices.size(), 0);
   for (std::size_t t = 2 * result.surface.quads; t < result.surface.triangles.size(); ++t)

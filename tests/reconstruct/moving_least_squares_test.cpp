@@ -91,6 +91,19 @@ TEST(Mls, KeepsTheFacesOfAThinPlateWhole) {
     }
 }
 
+// Off an edge, at the end of the supports, the last samples may all be of one side, whose plane
+// goes on there: the surface had sheets along it, which ended where nothing was known. A closed
+// body's surface is closed.
+TEST(Mls, MakesNoSheetsOffExactEdges) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SCOPED_TRACE(seed);
+    const EdgeCensus census = edge_census(mls(cube_cloud(20'000, seed)).surface);
+    EXPECT_TRUE(census.watertight);
+    EXPECT_EQ(census.components, 1u);
+    EXPECT_EQ(census.genus, 0);
+  }
+}
+
 TEST(Mls, RefusesOptionsOutsideTheirLimits) {
   EXPECT_THROW(mls(sphere_cloud(100), {.support_spacings = 0.5}), Error);
   EXPECT_THROW(mls(sphere_cloud(100), {.max_depth = 30}), Error);
