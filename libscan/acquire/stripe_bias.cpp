@@ -115,6 +115,7 @@ std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<co
     if (here.width_px < whole_share * whole_px) return std::nullopt;
     return perhaps_cut;
   }
+  if (here.width_px < whole_share * std::min(one->width_px, other->width_px)) return std::nullopt;
   const double shift_px =
       stripe_shift_px({0, here.column_px, here.height_e}, *one, *other, here.width_px);
   if (!std::isfinite(shift_px)) return perhaps_cut;

@@ -113,6 +113,19 @@ TEST(StripeShift, OfACutStripeIsNotKnown) {
   EXPECT_FALSE(stripe_shift(sweep.frames, sweep.rays, 13));
 }
 
+// Where the plane of light goes past an edge to a body behind, its tail still lights the edge: of
+// that stripe less is left than of those on either side, which are seen.
+TEST(StripeShift, OfATailBetweenTwoBodiesIsNotKnown) {
+  Sweep sweep = sweep_over_a_plane(25);
+  sweep.rays[12].width_px = 0.79 * 1.5;
+  EXPECT_FALSE(stripe_shift(sweep.frames, sweep.rays, 12));
+  sweep.rays[12].width_px = 0.81 * 1.5;
+  EXPECT_TRUE(stripe_shift(sweep.frames, sweep.rays, 12)->is_known);
+  // as wide as the one, where the body is steeper on the other side
+  for (std::size_t ray = 13; ray < 25; ++ray) sweep.rays[ray].width_px = 3;
+  EXPECT_TRUE(stripe_shift(sweep.frames, sweep.rays, 12)->is_known);
+}
+
 TEST(StripeShift, OfALonelyStripeIsNotKnownUnlessItIsTheOnlyStep) {
   Sweep sweep = sweep_over_a_plane(25);
   for (const std::size_t ray : {10u, 11u, 13u, 14u}) sweep.rays[ray] = {};
