@@ -80,6 +80,18 @@ struct Reading {
   decoding::StripePeak peak = {};  // where there is an outcome
 };
 
+// Where a stripe was found at a step, scanner frame.
+RayOutcome placed(const StripeImages& frames, const decoding::StripePeak& peak, std::size_t step,
+                  int row) {
+  RayOutcome outcome = triangulate(frames.calibration, peak, row);
+  if (!outcome.miss.empty()) return outcome;
+  const Pose& scanner_from_camera = frames.scanner_from_camera[step];
+  outcome.point = scanner_from_camera * outcome.point;
+  outcome.covariance =
+      scanner_from_camera.linear() * outcome.covariance * scanner_from_camera.linear().transpose();
+  return outcome;
+}
+
 Reading decode_row(const StripeImages& frames, const LaserLineOptions& options, std::size_t step,
                    int row) {
   const Image<std::uint16_t>& image = frames.images[step];
@@ -89,33 +101,32 @@ Reading decode_row(const StripeImages& frames, const LaserLineOptions& options, 
     row_e[column] = decoding::electrons(sensor, image(column, row));
   const decoding::StripePeak peak = decoding::locate_stripe(row_e, sensor, options);
   if (!peak.miss.empty()) return {missed(peak.miss)};
-  RayOutcome outcome = triangulate(frames.calibration, peak, row);
-  if (!outcome.miss.empty()) return {outcome};
-  const Pose& scanner_from_camera = frames.scanner_from_camera[step];
-  outcome.point = scanner_from_camera * outcome.point;
-  outcome.covariance =
-      scanner_from_camera.linear() * outcome.covariance * scanner_from_camera.linear().transpose();
-  return {outcome, peak};
+  return {placed(frames, peak, step, row), peak};
 }
 
-// The outcomes with the shift that noise does not tell of in their sigmas, too.
-std::vector<RayOutcome> widened(const StripeImages& frames, std::span<const Reading> readings) {
+// The outcomes with the stripes moved back by what form and brightness moved them, and what stays
+// unknown of that in their sigmas.
+std::vector<RayOutcome> corrected(const StripeImages& frames, std::span<const Reading> readings) {
   std::vector<decoding::LitRay> rays;
   rays.reserve(readings.size());
   for (const auto& [outcome, peak] : readings)
-    rays.push_back({outcome.point, peak.column_px, peak.width_px, peak.height_e});
+    rays.push_back(outcome.miss.empty() ? decoding::LitRay{outcome.point, peak.column_px,
+                                                           peak.width_px, peak.height_e}
+                                        : decoding::LitRay{});
+  const auto shifts = decoding::stripe_shifts(frames, rays);
+  const auto rows = static_cast<std::size_t>(frames.calibration.camera.height_px);
   std::vector<RayOutcome> outcomes(readings.size());
   parallel_for(outcomes.size(), [&](std::size_t ray) {
     outcomes[ray] = readings[ray].outcome;
     if (!outcomes[ray].miss.empty()) return;
-    const auto shift_px = decoding::unseen_shift_px(frames, rays, ray);
-    if (!shift_px) {
+    if (!shifts[ray]) {
       outcomes[ray] = missed(reason::inconsistent);
       return;
     }
-    const double ratio = *shift_px / readings[ray].peak.sigma_px;
-    outcomes[ray].sigma_m *= std::hypot(1, ratio);
-    outcomes[ray].covariance *= 1 + ratio * ratio;
+    decoding::StripePeak peak = readings[ray].peak;
+    peak.column_px -= shifts[ray]->shift_px;
+    peak.sigma_px = std::hypot(peak.sigma_px, shifts[ray]->unknown_px);
+    outcomes[ray] = placed(frames, peak, ray / rows, static_cast<int>(ray % rows));
   });
   return outcomes;
 }
@@ -130,7 +141,7 @@ Scan acquire_laser_line(const StripeImages& frames, const LaserLineOptions& opti
     readings[ray] = decode_row(frames, options, ray / rows, static_cast<int>(ray % rows));
   });
   return decoding::collect(
-      widened(frames, readings),
+      corrected(frames, readings),
       {static_cast<std::uint32_t>(frames.images.size()), static_cast<std::uint32_t>(rows)});
 }
 

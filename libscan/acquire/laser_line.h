@@ -20,12 +20,13 @@ struct LaserLineOptions {
 };
 
 // Scanner frame, sigma along the camera's ray, covariance from the triangulation's Jacobian: of
-// rank one, since an image row is a choice and only the column is measured. Both count, besides
-// noise, how far form and brightness of the body may have moved the stripe (stripe_bias.h). One
-// peak per row: the strongest if no other is half as high (else ambiguous); clipped: saturated; cut
-// by an edge, or seen at one step alone of several (stripe_bias.h): inconsistent; its
-// +-3 sigma cut by the image: border; parallel to the light plane within three sigma, or behind:
-// undetermined. Throws scan::Error (input) for frames that do not fit their calibration.
+// rank one, since an image row is a choice and only the column is measured. A stripe that form and
+// brightness of the body have moved is moved back as far as other rows tell, and both count,
+// besides noise, how far it may be off still (stripe_bias.h). One peak per row: the strongest if no
+// other is half as high (else ambiguous); clipped: saturated; cut by an edge, or seen at one step
+// alone of several (stripe_bias.h): inconsistent; its +-3 sigma cut by the image: border; parallel
+// to the light plane within three sigma, or behind: undetermined. Throws scan::Error (input) for
+// frames that do not fit their calibration.
 Scan acquire_laser_line(const StripeImages& frames, const LaserLineOptions& options = {});
 
 }  // namespace scan

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/acquire/stripe_bias.h"
 
+#include <algorithm>
 #include <cmath>
-#include <optional>
+
+#include "libscan/core/parallel.h"
 
 namespace scan::decoding {
 namespace {
@@ -93,11 +95,12 @@ double stripe_shift_px(const LitPlace& here, const LitPlace& one, const LitPlace
   return width_px * width_px * (g / a + 3 * b / (a * a));
 }
 
-std::optional<double> unseen_shift_px(const StripeImages& frames, std::span<const LitRay> rays,
-                                      std::size_t ray) {
+std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<const LitRay> rays,
+                                        std::size_t ray) {
   const LitRay& here = rays[ray];
   const Walk walk(frames, rays, ray);
-  const double least_px = least_widths * here.width_px, cut_px = cut_share * here.width_px;
+  const double least_px = least_widths * here.width_px;
+  const StripeShift perhaps_cut{.unknown_px = cut_share * here.width_px};
   long ahead = 1, behind = -1;
   std::optional<LitPlace> one = walk.next(ahead, 1, least_px);
   std::optional<LitPlace> other = walk.next(behind, -1, least_px);
@@ -106,15 +109,63 @@ std::optional<double> unseen_shift_px(const StripeImages& frames, std::span<cons
   if (other && !one && !walk.is_step(ahead)) one = walk.next(behind, -1, 2 * least_px);
   const bool is_swept = (walk.is_step(ahead) || walk.is_step(behind)) &&
                         std::max(walk.moves_px(1), walk.moves_px(-1)) > here.width_px;
-  if (!one && !other) return is_swept ? std::nullopt : std::optional(cut_px);
+  if (!one && !other) return is_swept ? std::nullopt : std::optional(perhaps_cut);
   if (!one || !other) {
     const double whole_px = one ? one->width_px : other->width_px;
     if (here.width_px < whole_share * whole_px) return std::nullopt;
-    return cut_px;
+    return perhaps_cut;
   }
+  if (here.width_px < whole_share * std::min(one->width_px, other->width_px)) return std::nullopt;
   const double shift_px =
-      std::abs(stripe_shift_px({0, here.column_px, here.height_e}, *one, *other, here.width_px));
-  return std::isfinite(shift_px) ? shift_px : cut_px;
+      stripe_shift_px({0, here.column_px, here.height_e}, *one, *other, here.width_px);
+  if (!std::isfinite(shift_px)) return perhaps_cut;
+  return StripeShift{shift_px, 0, true};
+}
+
+namespace {
+
+// The sum over rows at the same distance to either side.
+struct Around {
+  double sum_px = 0;
+  int count = 0;
+};
+
+Around around(std::span<const LitRay> rays, std::span<const std::optional<StripeShift>> own,
+              std::size_t rows, std::size_t ray) {
+  const auto goes_on = [&](std::size_t from, std::size_t to) {
+    return own[to] && own[to]->is_known &&
+           std::abs(rays[to].column_px - rays[from].column_px) < rays[ray].width_px;
+  };
+  const std::size_t row = ray % rows;
+  const auto reach = static_cast<std::size_t>(least_widths * rays[ray].width_px);
+  const std::size_t most = std::min({reach, row, rows - 1 - row});
+  Around sum;
+  for (std::size_t k = 1; k <= most; ++k) {
+    if (!goes_on(ray - k + 1, ray - k) || !goes_on(ray + k - 1, ray + k)) break;
+    sum.sum_px += own[ray - k]->shift_px + own[ray + k]->shift_px;
+    sum.count += 2;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<std::optional<StripeShift>> stripe_shifts(const StripeImages& frames,
+                                                      std::span<const LitRay> rays) {
+  std::vector<std::optional<StripeShift>> own(rays.size());
+  parallel_for(rays.size(), [&](std::size_t ray) {
+    if (rays[ray].width_px > 0) own[ray] = stripe_shift(frames, rays, ray);
+  });
+  std::vector<std::optional<StripeShift>> shifts = own;
+  const auto rows = static_cast<std::size_t>(frames.calibration.camera.height_px);
+  parallel_for(rays.size(), [&](std::size_t ray) {
+    if (!own[ray] || !own[ray]->is_known) return;
+    const auto [sum_px, count] = around(rays, own, rows, ray);
+    const double mean_px = count > 0 ? sum_px / count : 0;
+    shifts[ray] =
+        StripeShift{mean_px, std::abs(count > 0 ? mean_px : own[ray]->shift_px), count > 0};
+  });
+  return shifts;
 }
 
 }  // namespace scan::decoding

@@ -37,14 +37,30 @@ struct LitRay {
   double height_e = 0;
 };
 
-// One standard deviation, in columns, of the centre of `ray` (of step * rows + row) besides its
-// noise: the shift above, by places of the same row that are seen at least four widths away. Where
-// the body is not seen that far to one side the stripe may be cut: 0.15 widths, but none if it has
-// less than 0.8 of the width of the one on the other side, as one that is cut within a width of its
-// centre, or beside it: then its place is the edge's and no longer the plane's. None as well where
-// steps a width and more apart see the body on neither side, so that it may be such a tail; where
-// the sweep stands still, or has no other step, 0.15.
-std::optional<double> unseen_shift_px(const StripeImages& frames, std::span<const LitRay> rays,
-                                      std::size_t ray);
+// What form and brightness do to a stripe.
+struct StripeShift {
+  double shift_px = 0;    // of its centre by the formula above; 0 where it is not known
+  double unknown_px = 0;  // one standard deviation of what else may have moved it, besides noise
+  bool is_known = false;
+};
+
+// Of `ray` (of step * rows + row), by places of the same row that are seen at least four widths
+// away. Where the body is not seen that far to one side the stripe may be cut: then 0.15 widths are
+// unknown, but none is returned if it has less than 0.8 of the width of the one on the other side,
+// as one that is cut within a width of its centre, or beside it: then its place is the edge's and
+// no longer the plane's. None as well if it has less than 0.8 of the width of either of two, whose
+// mean a stripe that is whole has nearly: a tail on an edge that the plane of light has passed,
+// another body behind. And none where steps a width and more apart see the body on neither side,
+// so that it may be such a tail; where the sweep stands still, or has no other step, 0.15.
+std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<const LitRay> rays,
+                                        std::size_t ray);
+
+// That of each ray as the rays around it tell: the mean over those of its step up to four widths
+// of rows away, as many to either side, as far as the stripe goes on (by less than a width from row
+// to row) and is known; its own left out, since it holds the noise of the centre that is to be
+// moved by it, three sixteenths. As much stays unknown: four widths may reach over a crease, where
+// a parabola is off by as much as it tells. Without such rays its own shift is unknown altogether.
+std::vector<std::optional<StripeShift>> stripe_shifts(const StripeImages& frames,
+                                                      std::span<const LitRay> rays);
 
 }  // namespace scan::decoding

@@ -76,63 +76,130 @@ Sweep sweep_over_a_plane(std::size_t steps) {
   return sweep;
 }
 
-TEST(UnseenShift, OfAPlaneIsNoneFromEndToEndOfTheSweep) {
+TEST(StripeShift, OfAPlaneIsNoneFromEndToEndOfTheSweep) {
   const Sweep sweep = sweep_over_a_plane(25);
-  for (std::size_t ray = 0; ray < sweep.rays.size(); ++ray)
-    EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, ray).value(), 0, 1e-9) << ray;
+  for (std::size_t ray = 0; ray < sweep.rays.size(); ++ray) {
+    const StripeShift shift = stripe_shift(sweep.frames, sweep.rays, ray).value();
+    EXPECT_TRUE(shift.is_known);
+    EXPECT_NEAR(shift.shift_px, 0, 1e-9) << ray;
+    EXPECT_EQ(shift.unknown_px, 0) << ray;
+  }
 }
 
 // Four widths are three steps: a hole within them may have cut the stripe.
-TEST(UnseenShift, BesideAHoleIsThatOfACut) {
+TEST(StripeShift, BesideAHoleIsThatOfACut) {
   Sweep sweep = sweep_over_a_plane(25);
   sweep.rays[12] = {};
   for (std::size_t ray = 0; ray < sweep.rays.size(); ++ray) {
     if (ray == 12) continue;
     const bool is_near = ray >= 9 && ray <= 15;
-    EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, ray).value(), is_near ? 0.15 * 1.5 : 0,
-                1e-9)
+    EXPECT_NEAR(stripe_shift(sweep.frames, sweep.rays, ray).value().unknown_px,
+                is_near ? 0.15 * 1.5 : 0, 1e-9)
         << ray;
   }
 }
 
 // The last stripe before a hole is a place if it is as wide as those farther in, and none if the
 // edge has taken a part of it.
-TEST(UnseenShift, OfACutStripeIsNotKnown) {
+TEST(StripeShift, OfACutStripeIsNotKnown) {
   Sweep sweep = sweep_over_a_plane(25);
   sweep.rays[12] = {};
   sweep.rays[11].width_px = 0.81 * 1.5;
-  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 11).value(), 0.15 * 0.81 * 1.5, 1e-9);
+  EXPECT_NEAR(stripe_shift(sweep.frames, sweep.rays, 11).value().unknown_px, 0.15 * 0.81 * 1.5,
+              1e-9);
   sweep.rays[11].width_px = 0.79 * 1.5;
-  EXPECT_FALSE(unseen_shift_px(sweep.frames, sweep.rays, 11));
+  EXPECT_FALSE(stripe_shift(sweep.frames, sweep.rays, 11));
   sweep.rays[13].width_px = 0.79 * 1.5;
-  EXPECT_FALSE(unseen_shift_px(sweep.frames, sweep.rays, 13));
+  EXPECT_FALSE(stripe_shift(sweep.frames, sweep.rays, 13));
 }
 
-TEST(UnseenShift, OfALonelyStripeIsNotKnownUnlessItIsTheOnlyStep) {
+// Where the plane of light goes past an edge to a body behind, its tail still lights the edge: of
+// that stripe less is left than of those on either side, which are seen.
+TEST(StripeShift, OfATailBetweenTwoBodiesIsNotKnown) {
+  Sweep sweep = sweep_over_a_plane(25);
+  sweep.rays[12].width_px = 0.79 * 1.5;
+  EXPECT_FALSE(stripe_shift(sweep.frames, sweep.rays, 12));
+  sweep.rays[12].width_px = 0.81 * 1.5;
+  EXPECT_TRUE(stripe_shift(sweep.frames, sweep.rays, 12)->is_known);
+  // as wide as the one, where the body is steeper on the other side
+  for (std::size_t ray = 13; ray < 25; ++ray) sweep.rays[ray].width_px = 3;
+  EXPECT_TRUE(stripe_shift(sweep.frames, sweep.rays, 12)->is_known);
+}
+
+TEST(StripeShift, OfALonelyStripeIsNotKnownUnlessItIsTheOnlyStep) {
   Sweep sweep = sweep_over_a_plane(25);
   for (const std::size_t ray : {10u, 11u, 13u, 14u}) sweep.rays[ray] = {};
-  EXPECT_FALSE(unseen_shift_px(sweep.frames, sweep.rays, 12));
+  EXPECT_FALSE(stripe_shift(sweep.frames, sweep.rays, 12));
   const Sweep one = sweep_over_a_plane(1);
-  EXPECT_NEAR(unseen_shift_px(one.frames, one.rays, 0).value(), 0.15 * 1.5, 1e-9);
+  EXPECT_NEAR(stripe_shift(one.frames, one.rays, 0).value().unknown_px, 0.15 * 1.5, 1e-9);
 }
 
 // Two looks at one place are no word of an edge, even if a third is missing to either side.
-TEST(UnseenShift, OfASweepThatStandsStillIsThatOfACut) {
+TEST(StripeShift, OfASweepThatStandsStillIsThatOfACut) {
   Sweep sweep = sweep_over_a_plane(5);
   for (auto& pose : sweep.frames.scanner_from_camera) pose = sweep.frames.scanner_from_camera[0];
   for (LitRay& ray : sweep.rays) ray.point = sweep.rays[0].point;
   sweep.rays[0] = sweep.rays[4] = {};
-  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 2).value(), 0.15 * 1.5, 1e-9);
+  EXPECT_NEAR(stripe_shift(sweep.frames, sweep.rays, 2).value().unknown_px, 0.15 * 1.5, 1e-9);
 }
 
 // Of a step in brightness by b = ln 2 between two steps, the parabola's slope at the stripe tells.
-TEST(UnseenShift, GrowsWithTheBrightnessStep) {
+TEST(StripeShift, GrowsWithTheBrightnessStep) {
   Sweep sweep = sweep_over_a_plane(25);
   for (std::size_t ray = 13; ray < 25; ++ray) sweep.rays[ray].height_e = 2000;
-  // ln 2 / (2 * 6 columns) * (1.5 columns)^2
-  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 12).value(), std::log(2.0) / 12 * 2.25,
-              1e-9);
-  EXPECT_NEAR(unseen_shift_px(sweep.frames, sweep.rays, 2).value(), 0, 1e-9);
+  // what is ahead is seen at higher columns: ln 2 / (2 * 6 columns) * (1.5 columns)^2
+  EXPECT_NEAR(stripe_shift(sweep.frames, sweep.rays, 12).value().shift_px,
+              std::log(2.0) / 12 * 2.25, 1e-9);
+  EXPECT_NEAR(stripe_shift(sweep.frames, sweep.rays, 2).value().shift_px, 0, 1e-9);
+}
+
+// Rows of a plane that are lit alike, one behind the other.
+Sweep sweep_over_rows(std::size_t steps, std::size_t rows) {
+  Sweep one = sweep_over_a_plane(steps), all;
+  all.frames = one.frames;
+  all.frames.calibration.camera.height_px = static_cast<int>(rows);
+  for (const LitRay& ray : one.rays) all.rays.insert(all.rays.end(), rows, ray);
+  return all;
+}
+
+// Brightness that doubles between two steps as above, a quarter more of it from row to row: the
+// mean over rows as far to either side is that of the middle one, whatever its own stripe says. Six
+// rows, four widths, count; of 0.1 px in the sixth the mean of twelve has 3 (1.5 / 7)^2 / 2 / 12 or
+// more, its places being 7 columns away on average: 5e-4 px.
+TEST(StripeShifts, AreTheMeansOfTheRowsAround) {
+  const std::size_t rows = 17, step = 12, ray = step * rows + 8;
+  Sweep sweep = sweep_over_rows(25, rows);
+  for (std::size_t i = 13 * rows; i < sweep.rays.size(); ++i)
+    sweep.rays[i].height_e *= std::exp2(1 + 0.25 * (static_cast<double>(i % rows) - 8));
+  const double expected_px = std::log(2.0) / 12 * 2.25;
+  sweep.rays[ray].column_px += 0.1;
+  const StripeShift shift = stripe_shifts(sweep.frames, sweep.rays)[ray].value();
+  EXPECT_TRUE(shift.is_known);
+  EXPECT_NEAR(shift.shift_px, expected_px, 1e-9);
+  EXPECT_NEAR(shift.unknown_px, expected_px, 1e-9);
+  sweep.rays[ray - 6].column_px += 0.1;
+  EXPECT_GT(std::abs(stripe_shifts(sweep.frames, sweep.rays)[ray]->shift_px - expected_px), 5e-4);
+  std::swap(sweep.rays[ray - 6].column_px, sweep.rays[ray - 7].column_px);
+  EXPECT_NEAR(stripe_shifts(sweep.frames, sweep.rays)[ray]->shift_px, expected_px, 1e-9);
+}
+
+// Of a stripe that is broken off beside the row, and of the first row of an image, the own shift is
+// all that there is: too noisy to move it.
+TEST(StripeShifts, AreUnknownWhereTheStripeEnds) {
+  const std::size_t rows = 9, ray = 12 * rows + 4;
+  Sweep sweep = sweep_over_rows(25, rows);
+  for (std::size_t i = 13 * rows; i < sweep.rays.size(); ++i) sweep.rays[i].height_e *= 2;
+  const double own_px = std::log(2.0) / 12 * 2.25;
+  const auto expect_unmoved = [&](std::size_t i) {
+    const StripeShift shift = stripe_shifts(sweep.frames, sweep.rays)[i].value();
+    EXPECT_EQ(shift.shift_px, 0);
+    EXPECT_NEAR(shift.unknown_px, own_px, 1e-9);
+  };
+  expect_unmoved(12 * rows);
+  sweep.rays[ray + 1].column_px += 1.6;  // more than a width of 1.5
+  expect_unmoved(ray);
+  sweep.rays[ray + 1] = {};
+  expect_unmoved(ray);
 }
 
 }  // namespace
