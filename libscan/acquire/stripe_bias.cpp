@@ -96,6 +96,7 @@ double stripe_shift_px(const LitPlace& here, const LitPlace& one, const LitPlace
 std::optional<double> unseen_shift_px(const StripeImages& frames, std::span<const LitRay> rays,
                                       std::size_t ray) {
   const LitRay& here = rays[ray];
+  const LitPlace own{0, here.column_px, here.height_e, here.width_px};
   const Walk walk(frames, rays, ray);
   const double least_px = least_widths * here.width_px, cut_px = cut_share * here.width_px;
   long ahead = 1, behind = -1;
@@ -110,10 +111,13 @@ std::optional<double> unseen_shift_px(const StripeImages& frames, std::span<cons
   if (!one || !other) {
     const double whole_px = one ? one->width_px : other->width_px;
     if (here.width_px < whole_share * whole_px) return std::nullopt;
-    return cut_px;
+    const auto second =
+        one ? walk.next(ahead, 1, 2 * least_px) : walk.next(behind, -1, 2 * least_px);
+    if (!second) return cut_px;
+    const double shift_px = stripe_shift_px(own, one ? *one : *other, *second, here.width_px);
+    return std::isfinite(shift_px) ? std::hypot(cut_px, shift_px) : cut_px;
   }
-  const double shift_px =
-      std::abs(stripe_shift_px({0, here.column_px, here.height_e}, *one, *other, here.width_px));
+  const double shift_px = std::abs(stripe_shift_px(own, *one, *other, here.width_px));
   return std::isfinite(shift_px) ? shift_px : cut_px;
 }
 

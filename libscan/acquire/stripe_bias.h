@@ -39,11 +39,12 @@ struct LitRay {
 
 // One standard deviation, in columns, of the centre of `ray` (of step * rows + row) besides its
 // noise: the shift above, by places of the same row that are seen at least four widths away. Where
-// the body is not seen that far to one side the stripe may be cut: 0.15 widths, but none if it has
-// less than 0.8 of the width of the one on the other side, as one that is cut within a width of its
-// centre, or beside it: then its place is the edge's and no longer the plane's. None as well where
-// steps a width and more apart see the body on neither side, so that it may be such a tail; where
-// the sweep stands still, or has no other step, 0.15.
+// the body is not seen that far to one side the stripe may be cut: 0.15 widths, and the shift by
+// two places on the other side, for a rim's form and brightness move a stripe, too. But none if it
+// has less than 0.8 of the width of the one on the other side, as one that is cut within a width of
+// its centre, or beside it: then its place is the edge's and no longer the plane's. None as well
+// where steps a width and more apart see the body on neither side, so that it may be such a tail;
+// where the sweep stands still, or has no other step, 0.15.
 std::optional<double> unseen_shift_px(const StripeImages& frames, std::span<const LitRay> rays,
                                       std::size_t ray);
 
