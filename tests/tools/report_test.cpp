@@ -3,7 +3,9 @@
 // `scan report`: the page, its twins, and what it makes of runs that are not whole.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tests/tools/small_run.h"
 
@@ -72,6 +74,46 @@ TEST(Report, HasTheSameNumbersOnThePageAndInItsTwins) {
     for (const auto& coordinate : place.at("position_m"))
       EXPECT_TRUE(holds(report.page, "<data value=\"" + coordinate.dump() + "\">"));
   EXPECT_GE(deviation.at("call_outs").size(), 3u);
+}
+
+// Counts stand in full, effects that were left out are no part of what the run cost, and a colour
+// scale's middle has no unit of its own.
+TEST(Report, PrintsCountsInFullAndTellsCostsThatWereSpared) {
+  const Folder folder;
+  const Written report = report_of(small_run(), folder);
+  const std::string triangles = report.twin.at("reconstruction").at("triangles").dump();
+  EXPECT_TRUE(holds(report.page, "<dt>triangles</dt><dd><data value=\"" + triangles + "\">" +
+                                     triangles + "</data></dd>"));
+  for (const auto& effect : report.twin.at("effects")) {
+    const std::string name = "<td>effect " + effect.at("effect").get<std::string>();
+    EXPECT_FALSE(
+        holds(report.page, name + (effect.at("decision") == "on" ? ", had" : ", estimated")))
+        << effect;
+  }
+  EXPECT_TRUE(holds(report.page, ">0</text>"));
+  EXPECT_FALSE(holds(report.page, ">0 m</text>"));
+}
+
+// Numbers of the worst places, discs of 9.5 px, that stand on one picture.
+TEST(Report, PutsNoNumberOnAnother) {
+  const Folder folder;
+  const std::string page = report_of(small_run(), folder).page;
+  const std::regex disc("<circle cx='([0-9.]+)' cy='([0-9.]+)' r='9.5'");
+  std::size_t numbers = 0;
+  for (auto at = page.find("<figure>"); at != std::string::npos; at = page.find("<figure>", at)) {
+    const std::size_t end = page.find("</figure>", at);
+    const std::string svg = page.substr(page.find("<svg", at), end - page.find("<svg", at));
+    std::vector<std::pair<double, double>> discs;
+    for (std::sregex_iterator one(svg.begin(), svg.end(), disc), last; one != last; ++one) {
+      const double x = std::stod((*one)[1]), y = std::stod((*one)[2]);
+      for (const auto& [other_x, other_y] : discs)
+        EXPECT_GE(std::hypot(x - other_x, y - other_y), 19 - 0.2) << "printed to 0.1 px";
+      discs.emplace_back(x, y);
+    }
+    numbers += discs.size();
+    at = end;
+  }
+  EXPECT_GT(numbers, 3u);
 }
 
 TEST(Report, OfARunIsThatOfTheFolder) {

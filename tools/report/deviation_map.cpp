@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <span>
 
 #include "tools/report/figure_tables.h"
 #include "tools/report/html.h"
@@ -20,6 +22,7 @@ using nlohmann::ordered_json;
 constexpr int view_px = 320;
 constexpr double seen_within_px = 2;
 constexpr double badge_px = 22;  // from a place to the middle of its number
+constexpr double badge_radius_px = 9.5;
 
 struct Mark {
   std::string number;
@@ -50,21 +53,37 @@ std::vector<std::vector<Mark>> marks_of(const std::vector<View>& views, const Po
   return marks;
 }
 
-// A ring on the place and its number beside it, away from the middle of the picture.
-std::string drawn(const Mark& mark) {
-  Eigen::Vector2d away = mark.at_px - Eigen::Vector2d::Constant(view_px / 2.0);
+// Where a number stands: away from the middle of the picture, turned by eighths of a circle until
+// it covers none of those before it.
+Eigen::Vector2d badge_of(const Eigen::Vector2d& at_px, std::span<const Eigen::Vector2d> before) {
+  Eigen::Vector2d away = at_px - Eigen::Vector2d::Constant(view_px / 2.0);
   away = away.norm() > 0 ? Eigen::Vector2d(away.normalized()) : Eigen::Vector2d(0, -1);
-  Eigen::Vector2d badge = mark.at_px + badge_px * away;
-  badge = badge.cwiseMax(11).cwiseMin(view_px - 11);
+  Eigen::Vector2d first = Eigen::Vector2d::Zero();
+  for (const int eighths : {0, 1, -1, 2, -2, 3, -3, 4}) {
+    Eigen::Vector2d badge =
+        at_px + badge_px * (Eigen::Rotation2Dd(eighths * std::numbers::pi / 4) * away);
+    badge = badge.cwiseMax(badge_radius_px + 1.5).cwiseMin(view_px - badge_radius_px - 1.5);
+    if (eighths == 0) first = badge;
+    const auto is_clear = [&](const Eigen::Vector2d& other) {
+      return (badge - other).norm() >= 2 * badge_radius_px;
+    };
+    if (std::all_of(before.begin(), before.end(), is_clear)) return badge;
+  }
+  return first;
+}
+
+// A ring on the place and its number beside it.
+std::string drawn(const Mark& mark, const Eigen::Vector2d& badge) {
   char text[512];
   std::snprintf(text, sizeof text,
                 "<circle cx='%.1f' cy='%.1f' r='4' fill='none' stroke='#111' stroke-width='1.6'/>"
                 "<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' stroke='#111'/>"
-                "<circle cx='%.1f' cy='%.1f' r='9.5' fill='#fff' stroke='#111'/>"
+                "<circle cx='%.1f' cy='%.1f' r='%.1f' fill='#fff' stroke='#111'/>"
                 "<text x='%.1f' y='%.1f' text-anchor='middle' font-size='12' "
                 "font-weight='700'>%s</text>",
                 mark.at_px.x(), mark.at_px.y(), mark.at_px.x(), mark.at_px.y(), badge.x(),
-                badge.y(), badge.x(), badge.y(), badge.x(), badge.y() + 4.2, mark.number.c_str());
+                badge.y(), badge.x(), badge.y(), badge_radius_px, badge.x(), badge.y() + 4.2,
+                mark.number.c_str());
   return text;
 }
 
@@ -72,9 +91,11 @@ std::string figure(const View& view, const std::vector<Mark>& marks, bool colour
   std::string alt =
       "The surface seen from " + view.name + (coloured ? ", coloured by its signed deviation" : "");
   std::string svg;
+  std::vector<Eigen::Vector2d> badges;
   for (std::size_t i = 0; i < marks.size(); ++i) {
+    badges.push_back(badge_of(marks[i].at_px, badges));
     alt += (i == 0 ? "; worst deviations marked on it: " : ", ") + marks[i].number;
-    svg += drawn(marks[i]);
+    svg += drawn(marks[i], badges.back());
   }
   const std::string size = std::to_string(view_px);
   return "<figure><div class=\"view\"><img width=\"" + size + "\" height=\"" + size + "\" alt=\"" +
@@ -94,7 +115,7 @@ std::string deviation_map(const RunRecord& record, const ordered_json& twin) {
   std::string html =
       coloured ? "<p>Signed distance of the reconstructed surface from the true one: blue lies "
                  "inside, red outside. The scale holds 99 % of the vertices; what lies beyond has "
-                 "the colour of its end. Numbers mark the worst places.</p>" +
+                 "the colour of its end; grey is unknown. Numbers mark the worst places.</p>" +
                      legend_plot(limit_m)
                : "<p>No truth, so no deviation: the surface in plain clay.</p>";
   const Portrait portrait(record.surface, record.deviations_m, limit_m);

@@ -151,7 +151,7 @@ std::vector<Part> parts_of(const ordered_json& twin, const Drawn& drawn) {
                                   twin.at("artefacts").at("measurements"))});
   if (twin.at("tradeoff").is_object())
     parts.push_back({"tradeoff", "Accuracy against time", tradeoff_parts(twin.at("tradeoff"))});
-  parts.push_back({"cost", "What it cost", cost_table(twin.at("cost"))});
+  parts.push_back({"cost", "What it cost", cost_table(twin.at("cost"), twin.at("effects"))});
   parts.push_back({"provenance", "Provenance", provenance_part(twin)});
   if (!drawn.view.empty())
     parts.push_back({"licences", "Licences",

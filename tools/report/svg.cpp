@@ -40,7 +40,7 @@ std::string axis(double limit_m, double y) {
     const char* anchor = k == -2 ? "start" : k == 2 ? "end" : "middle";
     svg += print("<line class='axis' x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f'/>", x, y, x, y + 5);
     svg += print("<text x='%.1f' y='%.1f' text-anchor='%s'>%s%s</text>", x, y + 20, anchor,
-                 k > 0 ? "+" : "", page_length(limit_m * k / 2).c_str());
+                 k > 0 ? "+" : "", k == 0 ? "0" : page_length(limit_m * k / 2).c_str());
   }
   return svg;
 }
