@@ -3,9 +3,7 @@
 // `scan report`: the page, its twins, and what it makes of runs that are not whole.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "tests/tools/small_run.h"
 
@@ -92,28 +90,6 @@ TEST(Report, PrintsCountsInFullAndTellsCostsThatWereSpared) {
   }
   EXPECT_TRUE(holds(report.page, ">0</text>"));
   EXPECT_FALSE(holds(report.page, ">0 m</text>"));
-}
-
-// Numbers of the worst places, discs of 9.5 px, that stand on one picture.
-TEST(Report, PutsNoNumberOnAnother) {
-  const Folder folder;
-  const std::string page = report_of(small_run(), folder).page;
-  const std::regex disc("<circle cx='([0-9.]+)' cy='([0-9.]+)' r='9.5'");
-  std::size_t numbers = 0;
-  for (auto at = page.find("<figure>"); at != std::string::npos; at = page.find("<figure>", at)) {
-    const std::size_t end = page.find("</figure>", at);
-    const std::string svg = page.substr(page.find("<svg", at), end - page.find("<svg", at));
-    std::vector<std::pair<double, double>> discs;
-    for (std::sregex_iterator one(svg.begin(), svg.end(), disc), last; one != last; ++one) {
-      const double x = std::stod((*one)[1]), y = std::stod((*one)[2]);
-      for (const auto& [other_x, other_y] : discs)
-        EXPECT_GE(std::hypot(x - other_x, y - other_y), 19 - 0.2) << "printed to 0.1 px";
-      discs.emplace_back(x, y);
-    }
-    numbers += discs.size();
-    at = end;
-  }
-  EXPECT_GT(numbers, 3u);
 }
 
 TEST(Report, OfARunIsThatOfTheFolder) {

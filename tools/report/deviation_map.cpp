@@ -6,8 +6,6 @@
 #include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <numbers>
-#include <span>
 
 #include "tools/report/figure_tables.h"
 #include "tools/report/html.h"
@@ -21,8 +19,6 @@ using nlohmann::ordered_json;
 
 constexpr int view_px = 320;
 constexpr double seen_within_px = 2;
-constexpr double badge_px = 22;  // from a place to the middle of its number
-constexpr double badge_radius_px = 9.5;
 
 struct Mark {
   std::string number;
@@ -53,25 +49,6 @@ std::vector<std::vector<Mark>> marks_of(const std::vector<View>& views, const Po
   return marks;
 }
 
-// Where a number stands: away from the middle of the picture, turned by eighths of a circle until
-// it covers none of those before it.
-Eigen::Vector2d badge_of(const Eigen::Vector2d& at_px, std::span<const Eigen::Vector2d> before) {
-  Eigen::Vector2d away = at_px - Eigen::Vector2d::Constant(view_px / 2.0);
-  away = away.norm() > 0 ? Eigen::Vector2d(away.normalized()) : Eigen::Vector2d(0, -1);
-  Eigen::Vector2d first = Eigen::Vector2d::Zero();
-  for (const int eighths : {0, 1, -1, 2, -2, 3, -3, 4}) {
-    Eigen::Vector2d badge =
-        at_px + badge_px * (Eigen::Rotation2Dd(eighths * std::numbers::pi / 4) * away);
-    badge = badge.cwiseMax(badge_radius_px + 1.5).cwiseMin(view_px - badge_radius_px - 1.5);
-    if (eighths == 0) first = badge;
-    const auto is_clear = [&](const Eigen::Vector2d& other) {
-      return (badge - other).norm() >= 2 * badge_radius_px;
-    };
-    if (std::all_of(before.begin(), before.end(), is_clear)) return badge;
-  }
-  return first;
-}
-
 // A ring on the place and its number beside it.
 std::string drawn(const Mark& mark, const Eigen::Vector2d& badge) {
   char text[512];
@@ -91,11 +68,12 @@ std::string figure(const View& view, const std::vector<Mark>& marks, bool colour
   std::string alt =
       "The surface seen from " + view.name + (coloured ? ", coloured by its signed deviation" : "");
   std::string svg;
-  std::vector<Eigen::Vector2d> badges;
+  std::vector<Eigen::Vector2d> places;
+  for (const Mark& mark : marks) places.push_back(mark.at_px);
+  const std::vector<Eigen::Vector2d> badges = badge_places(places, view_px);
   for (std::size_t i = 0; i < marks.size(); ++i) {
-    badges.push_back(badge_of(marks[i].at_px, badges));
     alt += (i == 0 ? "; worst deviations marked on it: " : ", ") + marks[i].number;
-    svg += drawn(marks[i], badges.back());
+    svg += drawn(marks[i], badges[i]);
   }
   const std::string size = std::to_string(view_px);
   return "<figure><div class=\"view\"><img width=\"" + size + "\" height=\"" + size + "\" alt=\"" +
