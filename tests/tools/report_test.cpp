@@ -74,6 +74,24 @@ TEST(Report, HasTheSameNumbersOnThePageAndInItsTwins) {
   EXPECT_GE(deviation.at("call_outs").size(), 3u);
 }
 
+// Counts stand in full, effects that were left out are no part of what the run cost, and a colour
+// scale's middle has no unit of its own.
+TEST(Report, PrintsCountsInFullAndTellsCostsThatWereSpared) {
+  const Folder folder;
+  const Written report = report_of(small_run(), folder);
+  const std::string triangles = report.twin.at("reconstruction").at("triangles").dump();
+  EXPECT_TRUE(holds(report.page, "<dt>triangles</dt><dd><data value=\"" + triangles + "\">" +
+                                     triangles + "</data></dd>"));
+  for (const auto& effect : report.twin.at("effects")) {
+    const std::string name = "<td>effect " + effect.at("effect").get<std::string>();
+    EXPECT_FALSE(
+        holds(report.page, name + (effect.at("decision") == "on" ? ", had" : ", estimated")))
+        << effect;
+  }
+  EXPECT_TRUE(holds(report.page, ">0</text>"));
+  EXPECT_FALSE(holds(report.page, ">0 m</text>"));
+}
+
 TEST(Report, OfARunIsThatOfTheFolder) {
   const Folder folder;
   const Written report = report_of(small_run(), folder);

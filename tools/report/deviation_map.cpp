@@ -19,7 +19,6 @@ using nlohmann::ordered_json;
 
 constexpr int view_px = 320;
 constexpr double seen_within_px = 2;
-constexpr double badge_px = 22;  // from a place to the middle of its number
 
 struct Mark {
   std::string number;
@@ -50,21 +49,18 @@ std::vector<std::vector<Mark>> marks_of(const std::vector<View>& views, const Po
   return marks;
 }
 
-// A ring on the place and its number beside it, away from the middle of the picture.
-std::string drawn(const Mark& mark) {
-  Eigen::Vector2d away = mark.at_px - Eigen::Vector2d::Constant(view_px / 2.0);
-  away = away.norm() > 0 ? Eigen::Vector2d(away.normalized()) : Eigen::Vector2d(0, -1);
-  Eigen::Vector2d badge = mark.at_px + badge_px * away;
-  badge = badge.cwiseMax(11).cwiseMin(view_px - 11);
+// A ring on the place and its number beside it.
+std::string drawn(const Mark& mark, const Eigen::Vector2d& badge) {
   char text[512];
   std::snprintf(text, sizeof text,
                 "<circle cx='%.1f' cy='%.1f' r='4' fill='none' stroke='#111' stroke-width='1.6'/>"
                 "<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' stroke='#111'/>"
-                "<circle cx='%.1f' cy='%.1f' r='9.5' fill='#fff' stroke='#111'/>"
+                "<circle cx='%.1f' cy='%.1f' r='%.1f' fill='#fff' stroke='#111'/>"
                 "<text x='%.1f' y='%.1f' text-anchor='middle' font-size='12' "
                 "font-weight='700'>%s</text>",
                 mark.at_px.x(), mark.at_px.y(), mark.at_px.x(), mark.at_px.y(), badge.x(),
-                badge.y(), badge.x(), badge.y(), badge.x(), badge.y() + 4.2, mark.number.c_str());
+                badge.y(), badge.x(), badge.y(), badge_radius_px, badge.x(), badge.y() + 4.2,
+                mark.number.c_str());
   return text;
 }
 
@@ -72,9 +68,12 @@ std::string figure(const View& view, const std::vector<Mark>& marks, bool colour
   std::string alt =
       "The surface seen from " + view.name + (coloured ? ", coloured by its signed deviation" : "");
   std::string svg;
+  std::vector<Eigen::Vector2d> places;
+  for (const Mark& mark : marks) places.push_back(mark.at_px);
+  const std::vector<Eigen::Vector2d> badges = badge_places(places, view_px);
   for (std::size_t i = 0; i < marks.size(); ++i) {
     alt += (i == 0 ? "; worst deviations marked on it: " : ", ") + marks[i].number;
-    svg += drawn(marks[i]);
+    svg += drawn(marks[i], badges[i]);
   }
   const std::string size = std::to_string(view_px);
   return "<figure><div class=\"view\"><img width=\"" + size + "\" height=\"" + size + "\" alt=\"" +
@@ -94,7 +93,7 @@ std::string deviation_map(const RunRecord& record, const ordered_json& twin) {
   std::string html =
       coloured ? "<p>Signed distance of the reconstructed surface from the true one: blue lies "
                  "inside, red outside. The scale holds 99 % of the vertices; what lies beyond has "
-                 "the colour of its end. Numbers mark the worst places.</p>" +
+                 "the colour of its end; grey is unknown. Numbers mark the worst places.</p>" +
                      legend_plot(limit_m)
                : "<p>No truth, so no deviation: the surface in plain clay.</p>";
   const Portrait portrait(record.surface, record.deviations_m, limit_m);

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tools/console.h"
 #include "tools/report/html.h"
@@ -82,7 +82,7 @@ std::string verdict_cell(const ordered_json& m) {
 
 // Of an upper limit what is used; of a lower one what of the value it asks for.
 double share_of_limit(const ordered_json& m) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const double unknown = std::nan("");
   if (!m.at("value").is_number()) return unknown;
   const double value = std::abs(m.at("value").get<double>()), limit = m.at("limit").get<double>();
   const std::string relation = m.value("relation", "");
@@ -182,7 +182,7 @@ std::string statistics_table(const ordered_json& s) {
     headings.push_back("#" + name);
     row += exact_cell(s.at(key), "m");
   }
-  return table("Signed deviations of " + s.at("count").dump() + " vertices, " +
+  return table("Signed deviations of " + s.at("count").dump() + " vertices (not of area), " +
                    s.at("unknown").dump() + " more unknown; sizes are without sign.",
                headings, "<tr>" + row + "</tr>\n");
 }
@@ -226,7 +226,7 @@ std::string pose_table(const ordered_json& alignment) {
             exact_cell(scan.value("sigma_rotation_rad", ordered_json()), "rad") +
             exact_cell(scan.value("sigma_translation_m", ordered_json()), "m") +
             cell(joined_words(scan.value("weak_directions", ordered_json::array()))) + "</tr>\n";
-  return table("The poses as aligned; sigma is what noise leaves open of turn and shift.",
+  return table("The poses as aligned; sigma is what noise, in free motions the guess, leaves open.",
                {"scan", "stop", "#rms", "#paired", "#agreeing", "#sigma, turn", "#sigma, shift",
                 "motions that the data leave free"},
                rows);
@@ -267,8 +267,8 @@ std::string property_list(const ordered_json& object) {
   for (const auto& [key, value] : object.items()) {
     if (value.is_structured()) continue;
     html += "<dt>" + escaped(key) + "</dt><dd>" +
-            (value.is_number()   ? exact(value, unit_of(key))
-             : value.is_string() ? escaped(value.get<std::string>())
+            (value.is_number()   ? exact(value, value.is_number_integer() ? "count" : unit_of(key))
+               : value.is_string() ? escaped(value.get<std::string>())
              : value.is_null()   ? "none"
                                  : value.dump()) +
             "</dd>";
@@ -276,19 +276,22 @@ std::string property_list(const ordered_json& object) {
   return html + "</dl>\n";
 }
 
-std::string cost_table(const ordered_json& cost) {
+std::string cost_table(const ordered_json& cost, const ordered_json& effects) {
+  std::set<std::string> on;
+  for (const auto& effect : effects)
+    if (effect.value("decision", "") == "on") on.insert(effect.value("effect", ""));
   std::string rows;
   const auto row = [&](const std::string& name, const std::string& text) {
     rows += "<tr>" + cell(name) + cell(text, true) + "</tr>";
   };
-  const ordered_json& machine = cost.at("machine");
-  if (machine.is_string()) row("machine", machine.get<std::string>());
+  if (cost.at("machine").is_string()) row("machine", cost.at("machine").get<std::string>());
   if (cost.at("threads").is_number()) row("threads", cost.at("threads").dump());
   for (const auto& [stage, value] : cost.at("seconds").items()) row(stage, seconds_text(value));
   if (cost.at("effect_seconds").is_object())
     for (const auto& [effect, value] : cost.at("effect_seconds").items())
       if (value.is_number() && value.get<double>() > 0)
-        row("effect " + effect + ", estimated", seconds_text(value));
+        row("effect " + effect + (on.contains(effect) ? ", estimated" : ", had it been on"),
+            seconds_text(value));
   return "\n<table id=\"seconds\"><thead><tr><th scope=\"col\">what</th><th scope=\"col\" "
          "class=\"number\">seconds</th></tr></thead><tbody>" +
          rows + "</tbody></table>\n";

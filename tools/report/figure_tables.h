@@ -26,7 +26,8 @@ std::string effect_table(const nlohmann::ordered_json& effects);
 // Every key with its value; numbers by the unit that the key's ending names.
 std::string property_list(const nlohmann::ordered_json& object);
 
-// Seconds of each stage, machine, threads and the cost of each effect: <table id="seconds">.
-std::string cost_table(const nlohmann::ordered_json& cost);
+// Seconds of each stage, machine, threads and the cost of each effect, on or not: <table
+// id="seconds">.
+std::string cost_table(const nlohmann::ordered_json& cost, const nlohmann::ordered_json& effects);
 
 }  // namespace scan

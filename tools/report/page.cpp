@@ -147,11 +147,12 @@ std::vector<Part> parts_of(const ordered_json& twin, const Drawn& drawn) {
   if (twin.at("artefacts").is_object())
     parts.push_back({"artefacts", "Scanner's data sheet",
                      figure_table("Errors on calibrated bodies, after VDI/VDE 2634 and ISO "
-                                  "10360-13, not certified.",
+                                  "10360-13, not certified; predicted by the points' own sigma "
+                                  "and spacing.",
                                   twin.at("artefacts").at("measurements"))});
   if (twin.at("tradeoff").is_object())
     parts.push_back({"tradeoff", "Accuracy against time", tradeoff_parts(twin.at("tradeoff"))});
-  parts.push_back({"cost", "What it cost", cost_table(twin.at("cost"))});
+  parts.push_back({"cost", "What it cost", cost_table(twin.at("cost"), twin.at("effects"))});
   parts.push_back({"provenance", "Provenance", provenance_part(twin)});
   if (!drawn.view.empty())
     parts.push_back({"licences", "Licences",

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/svg.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <numeric>
 
 #include "tools/report/colour_map.h"
@@ -40,7 +42,7 @@ std::string axis(double limit_m, double y) {
     const char* anchor = k == -2 ? "start" : k == 2 ? "end" : "middle";
     svg += print("<line class='axis' x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f'/>", x, y, x, y + 5);
     svg += print("<text x='%.1f' y='%.1f' text-anchor='%s'>%s%s</text>", x, y + 20, anchor,
-                 k > 0 ? "+" : "", page_length(limit_m * k / 2).c_str());
+                 k > 0 ? "+" : "", k == 0 ? "0" : page_length(limit_m * k / 2).c_str());
   }
   return svg;
 }
@@ -81,7 +83,37 @@ std::string limit_lines(const DeviationHistogram& histogram,
   return svg;
 }
 
+constexpr double badge_distance_px = 22;  // from a place to the middle of its number
+
+Eigen::Vector2d badge_place(const Eigen::Vector2d& place_px, double picture_px,
+                            std::span<const Eigen::Vector2d> before) {
+  constexpr double least_px = badge_radius_px + 1.5;
+  Eigen::Vector2d away = place_px - Eigen::Vector2d::Constant(picture_px / 2);
+  away = away.norm() > 0 ? Eigen::Vector2d(away.normalized()) : Eigen::Vector2d(0, -1);
+  const auto turned = [&](int eighths) -> Eigen::Vector2d {
+    const Eigen::Rotation2Dd turn(eighths * std::numbers::pi / 4);
+    const Eigen::Vector2d place = place_px + badge_distance_px * (turn * away);
+    return place.cwiseMax(least_px).cwiseMin(picture_px - least_px);
+  };
+  for (const int eighths : {0, 1, -1, 2, -2, 3, -3, 4}) {
+    const Eigen::Vector2d place = turned(eighths);
+    const auto is_clear = [&](const Eigen::Vector2d& other) {
+      return (place - other).norm() >= 2 * badge_radius_px;
+    };
+    if (std::all_of(before.begin(), before.end(), is_clear)) return place;
+  }
+  return turned(0);
+}
+
 }  // namespace
+
+std::vector<Eigen::Vector2d> badge_places(std::span<const Eigen::Vector2d> places_px,
+                                          double picture_px) {
+  std::vector<Eigen::Vector2d> badges;
+  for (const Eigen::Vector2d& place : places_px)
+    badges.push_back(badge_place(place, picture_px, badges));
+  return badges;
+}
 
 std::string histogram_plot(const DeviationHistogram& histogram,
                            const std::vector<HistogramLimit>& limits) {

@@ -3,6 +3,8 @@
 // Plots as SVG text: the same bytes for the same numbers.
 #pragma once
 
+#include <Eigen/Core>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,5 +28,12 @@ std::string legend_plot(double limit_m);
 
 // How much of a limit a value uses: a bar whose mark is the limit.
 std::string limit_bar(double share_of_limit, bool pass);
+
+// Where the numbers of places on a square picture stand, pixels: discs of badge_radius_px, each
+// beside its place, away from the picture's middle, or turned by eighths of a circle so that it
+// covers none of those before it, if there is such room. The picture holds them whole.
+inline constexpr double badge_radius_px = 9.5;
+std::vector<Eigen::Vector2d> badge_places(std::span<const Eigen::Vector2d> places_px,
+                                          double picture_px);
 
 }  // namespace scan
