@@ -100,21 +100,21 @@ double rms_px(const Bundle& bundle) {
   return std::sqrt(sum / count);
 }
 
-// From guesses up to a radian off, where full steps lead astray: each ends, if only in a mirrored
-// pose, and none farther off than it began, as each step is taken only if it leads down.
+// From poses up to a radian off, where full steps lead astray, with the camera sought, too: none
+// ends farther off than it began, as each step is taken only if it leads down.
 TEST(BoardBundle, NeverEndsWorseThanItBegan) {
   RandomStream random(4, 0, 0);
-  const Pose truth = test::held_board(bent_camera(), test_board, {420, 290}, 0.3, 0.5, 1);
-  const BoardSighting seen = test::sighting(bent_camera(), test_board, truth, 0.1, random);
-  const Eigen::Translation3d middle(truth * Eigen::Vector3d(0.08, 0.05, 0));
+  const std::vector<Pose> poses = held_boards(bent_camera(), test_board, 3, 3);
   for (int i = 0; i < 50; ++i) {
-    Vector6 off;
-    for (int k = 0; k < 6; ++k) off[k] = (k < 3 ? 1 : 0.1) * (2 * random.uniform() - 1);
-    Bundle guess{
-        .board_m = corners_m(test_board), .cameras = {bent_camera()}, .fixed_cameras = true};
-    guess.pictures.push_back({{seen.corners_px}, middle * exp(off) * middle.inverse() * truth});
+    Bundle guess{.board_m = corners_m(test_board), .cameras = {bent_camera()}};
+    for (const Pose& pose : poses) {
+      const BoardSighting seen = test::sighting(bent_camera(), test_board, pose, 0.1, random);
+      const Eigen::Translation3d middle(pose * Eigen::Vector3d(0.08, 0.05, 0));
+      Vector6 off;
+      for (int k = 0; k < 6; ++k) off[k] = (k < 3 ? 1 : 0.1) * (2 * random.uniform() - 1);
+      guess.pictures.push_back({{seen.corners_px}, middle * exp(off) * middle.inverse() * pose});
+    }
     const BundleFit fit = adjust(guess);
-    EXPECT_TRUE(fit.converged) << i;
     EXPECT_LE(fit.rms_px, rms_px(guess)) << i;
   }
 }
