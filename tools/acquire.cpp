@@ -50,6 +50,8 @@ Scan decode(const Arguments& arguments, const RawFrames& frames) {
 int acquire_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
   check_output(output);
+  check_scan_ending(output);
+  if (!arguments.disparity.empty()) check_output(arguments.disparity);
   if (arguments.calibration.empty())
     throw Error(Trouble::usage, "--calibration: is missing, what the device's numbers mean",
                 "scan calibrate makes one");

@@ -7,7 +7,6 @@
 
 #include "libscan/align/multiview.h"
 #include "libscan/core/error.h"
-#include "libscan/core/units.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
@@ -27,7 +26,7 @@ struct Arguments {
   std::string search = "kd-tree";
   std::string init;
   bool global = false;
-  double guess_rotation_deg = 0, guess_translation_m = 0;
+  double guess_rotation_rad = 0, guess_translation_m = 0;
   double max_distance_m = 0;
   double thin_m = 0;
   bool resume = false;
@@ -58,17 +57,17 @@ void write_results(const std::filesystem::path& folder, const std::vector<std::s
 
 // As given, else as the scans state it.
 std::vector<GuessSigma> sigmas_of(const Arguments& arguments, const Starts& starts) {
-  const double turn_deg = arguments.guess_rotation_deg, shift_m = arguments.guess_translation_m;
-  if (turn_deg == 0 && shift_m == 0) return starts.sigmas;
+  const double turn_rad = arguments.guess_rotation_rad, shift_m = arguments.guess_translation_m;
+  if (turn_rad == 0 && shift_m == 0) return starts.sigmas;
   if (arguments.global)
     throw Error(Trouble::usage,
                 "--global: finds poses without a guess, --guess-rotation and "
                 "--guess-translation say how far off one is",
                 "leave one of them out");
-  if (!(turn_deg > 0 && shift_m > 0))
+  if (!(turn_rad > 0 && shift_m > 0))
     throw Error(Trouble::usage,
                 "--guess-rotation and --guess-translation: must both be given and positive");
-  return std::vector<GuessSigma>(starts.scans.size(), {rad_from_deg(turn_deg), shift_m});
+  return std::vector<GuessSigma>(starts.scans.size(), {turn_rad, shift_m});
 }
 
 // Of all that decides the pairs.
@@ -178,8 +177,8 @@ Action align_command(CommandLine& line) {
               {"kd-tree", "octree", "brute-force", "flann", "pcl-octree"}, "neighbour search");
   line.option("--init", arguments->init,
               "poses to start from (TUM, KITTI, 4x4, Stanford .conf, alignment.json)");
-  line.number("--guess-rotation", arguments->guess_rotation_deg, 0, 180,
-              "root mean square by which the starts are turned, degrees");
+  line.angle("--guess-rotation", arguments->guess_rotation_rad,
+             "root mean square by which the starts are turned");
   line.length(
       "--guess-translation", arguments->guess_translation_m,
       "root mean square by which they are shifted; where the scans leave motions open, both "

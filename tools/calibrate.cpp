@@ -32,7 +32,7 @@ struct Arguments {
 };
 
 // "9x6": columns and rows of inner corners.
-Board board_of(const Arguments& arguments) {
+Board board_of(const Arguments& arguments, Console& console) {
   Board board{.square_m = arguments.square_m};
   int used = 0;
   const bool read =
@@ -43,6 +43,9 @@ Board board_of(const Arguments& arguments) {
   if (board.square_m == 0)
     throw Error(Trouble::usage, "--square: is missing, the side of the board's squares");
   check(board);
+  if (board.square_m >= 1)
+    console.warn("--square: a square of " + readable_length(board.square_m) +
+                 "? A bare number is metres; millimetres are written as 20mm");
   return board;
 }
 
@@ -110,7 +113,7 @@ void warn_of_coverage(const std::string& name, double coverage, double ray_sigma
 
 ordered_json calibrate_camera_files(const Files& files, const std::string& output,
                                     const Arguments& arguments, Console& console) {
-  const Board board = board_of(arguments);
+  const Board board = board_of(arguments, console);
   const CameraCalibration found =
       calibrate_camera(board, find_boards(files, board),
                        {.distortion_terms = static_cast<int>(arguments.distortion)});
@@ -151,7 +154,7 @@ ordered_json rig_figures(const RigCalibration& found, Console& console) {
 
 ordered_json calibrate_stereo_files(const Files& files, const std::string& output,
                                     const Arguments& arguments, Console& console) {
-  const Board board = board_of(arguments);
+  const Board board = board_of(arguments, console);
   const auto [left, right] = halves(files, "as many right pictures as left ones are needed");
   const auto left_seen = find_boards(left, board), right_seen = find_boards(right, board);
   std::vector<BoardPair> pairs;
@@ -183,9 +186,26 @@ std::vector<Pose> steps_of(const std::string& path) {
   return steps;
 }
 
+// Says the plane n . x = offset, camera frame, with a standard deviation for each of its numbers.
+ordered_json plane_figures(const LightPlaneCalibration& found, Console& console) {
+  const auto say = [&](const std::string& name, double value, int row, double scale, int digits) {
+    const double sigma = std::sqrt(found.covariance(row, row));
+    console.say("  " + name + " " + rounded(scale * value, digits) + " +- " +
+                rounded(scale * sigma, digits));
+  };
+  for (int i = 0; i < 3; ++i) say(std::string("normal ") + "xyz"[i], found.normal[i], 9 + i, 1, 6);
+  say("offset_mm", found.offset_m, 12, 1e3, 4);
+  return {{"points", found.points},
+          {"rms_m", found.rms_m},
+          {"misfit", found.misfit},
+          {"normal", {found.normal.x(), found.normal.y(), found.normal.z()}},
+          {"offset_m", found.offset_m},
+          {"offset_sigma_m", std::sqrt(found.covariance(12, 12))}};
+}
+
 ordered_json calibrate_light_plane_files(const Files& files, const std::string& output,
                                          const Arguments& arguments, Console& console) {
-  const Board board = board_of(arguments);
+  const Board board = board_of(arguments, console);
   if (arguments.camera.empty())
     throw Error(Trouble::usage, "--camera: is missing, a camera.json of scan calibrate camera");
   const auto [boards, stripes] = halves(files, "as many of stripes as of boards are needed");
@@ -209,16 +229,11 @@ ordered_json calibrate_light_plane_files(const Files& files, const std::string& 
   setup.calibration.plane_offset_m = found.offset_m;
   ordered_json pictures = pictures_json(boards, found.pictures, console);
   write_json(output, calibration_json(setup, found));
-  const double offset_sigma_m = std::sqrt(found.covariance(12, 12));
   console.say(output + ": " + std::to_string(found.points) + " points, rms " +
               readable_length(found.rms_m) + " from the plane, misfit " + rounded(found.misfit, 2));
-  return {{"points", found.points},
-          {"rms_m", found.rms_m},
-          {"misfit", found.misfit},
-          {"normal", {found.normal.x(), found.normal.y(), found.normal.z()}},
-          {"offset_m", found.offset_m},
-          {"offset_sigma_m", offset_sigma_m},
-          {"pictures", std::move(pictures)}};
+  ordered_json result = plane_figures(found, console);
+  result["pictures"] = std::move(pictures);
+  return result;
 }
 
 int calibrate_files(const Arguments& arguments, Console& console) {

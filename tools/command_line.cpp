@@ -3,11 +3,14 @@
 #include "tools/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
 
 #include "libscan/core/error.h"
 #include "libscan/core/nearest_word.h"
@@ -18,11 +21,25 @@
 namespace scan {
 namespace {
 
-struct LengthTarget {
+struct QuantityTarget {
   std::string name;
   std::shared_ptr<std::string> text;
-  double* value_m;
+  double* value;
+  double (*parse)(const std::string& text, const std::string& option);
 };
+
+// A word of a list; a slip is answered with the list and the nearest word.
+CLI::Validator one_of(std::vector<std::string> choices) {
+  std::string list;
+  for (const std::string& choice : choices) list += (list.empty() ? "" : ",") + choice;
+  const auto check = [choices = std::move(choices), list](std::string& word) -> std::string {
+    if (std::find(choices.begin(), choices.end(), word) != choices.end()) return {};
+    const std::string near = nearest_word(word, choices);
+    return "'" + word + "' is none of " + list +
+           (near.empty() ? "" : "; did you mean '" + near + "'?");
+  };
+  return CLI::Validator(check, "{" + list + "}");
+}
 
 class CliCommandLine : public CommandLine {
  public:
@@ -39,7 +56,11 @@ class CliCommandLine : public CommandLine {
   }
   void choice(std::string name, std::string& value, std::vector<std::string> choices,
               std::string help) override {
-    app_.add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
+    const bool is_required = !name.starts_with("-") && value.empty();
+    app_.add_option(name, value, help)
+        ->check(one_of(std::move(choices)))
+        ->capture_default_str()
+        ->required(is_required);
   }
   void whole(std::string name, long& value, long least, long most, std::string help) override {
     CLI::Option* option = app_.add_option(name, value, help)->check(CLI::Range(least, most));
@@ -50,22 +71,30 @@ class CliCommandLine : public CommandLine {
     app_.add_option(name, value, help)->check(CLI::Range(least, most))->capture_default_str();
   }
   void length(std::string name, double& value_m, std::string help) override {
-    auto text = std::make_shared<std::string>();
-    app_.add_option(name, *text, help + " (2mm, 0.1m; a bare number is metres)");
-    lengths_.push_back({name, text, &value_m});
+    quantity(name, value_m, help + " (2mm, 0.1m; a bare number is metres)", parse_length_m);
+  }
+  void angle(std::string name, double& value_rad, std::string help) override {
+    quantity(name, value_rad, help + " (2deg, 35mrad; a bare number is radians)", parse_angle_rad);
   }
   void flag(std::string name, bool& value, std::string help) override {
     app_.add_flag(name, value, help);
   }
 
-  void resolve_lengths() const {
-    for (const LengthTarget& target : lengths_)
-      if (!target.text->empty()) *target.value_m = parse_length_m(*target.text, target.name);
+  void resolve_quantities() const {
+    for (const QuantityTarget& target : quantities_)
+      if (!target.text->empty()) *target.value = target.parse(*target.text, target.name);
   }
 
  private:
+  void quantity(const std::string& name, double& value, const std::string& help,
+                double (*parse)(const std::string&, const std::string&)) {
+    auto text = std::make_shared<std::string>();
+    app_.add_option(name, *text, help);
+    quantities_.push_back({name, text, &value, parse});
+  }
+
   CLI::App& app_;
-  std::vector<LengthTarget> lengths_;
+  std::vector<QuantityTarget> quantities_;
 };
 
 struct Declared {
@@ -83,6 +112,21 @@ int report_error(const Console& console, const std::string& command, const Error
   if (!error.hint().empty()) details["hint"] = error.hint();
   console.finish(command, "error", {{"error", details}});
   return code;
+}
+
+// A number, not negative, and one of the units directly behind it.
+std::optional<double> quantity_of(const std::string& text,
+                                  const std::map<std::string, double>& units) {
+  std::size_t end = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  const auto unit = units.find(text.substr(end));
+  if (unit == units.end() || !std::isfinite(value) || value < 0) return std::nullopt;
+  return value * unit->second;
 }
 
 std::string unknown_word_hint(const CLI::App& app, int argc, char** argv,
@@ -124,7 +168,7 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error, int
 int run_action(const Declared& declared, Console& console) {
   const std::string& name = declared.command->name;
   try {
-    declared.line->resolve_lengths();
+    declared.line->resolve_quantities();
     const ThreadLimit limit(static_cast<int>(console.threads));
     return declared.action(console);
   } catch (const Error& error) {
@@ -151,18 +195,23 @@ void declare_shared_options(CommandLine& line, Console& console) {
 double parse_length_m(const std::string& text, const std::string& option) {
   static const std::map<std::string, double> units = {{"", 1},      {"m", 1},     {"mm", 1e-3},
                                                       {"um", 1e-6}, {"cm", 1e-2}, {"km", 1e3}};
-  std::size_t end = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &end);
-  } catch (const std::exception&) {
-    end = 0;
-  }
-  const auto unit = units.find(text.substr(end));
-  if (end == 0 || unit == units.end() || !std::isfinite(value) || value < 0)
+  const auto value_m = quantity_of(text, units);
+  if (!value_m)
     throw Error(Trouble::usage,
                 option + ": '" + text + "' is not a length, such as 2mm, 0.1m or 50um");
-  return value * unit->second;
+  return *value_m;
+}
+
+double parse_angle_rad(const std::string& text, const std::string& option) {
+  static const std::map<std::string, double> units = {
+      {"", 1}, {"rad", 1}, {"mrad", 1e-3}, {"deg", std::numbers::pi / 180}};
+  const auto value_rad = quantity_of(text, units);
+  if (!value_rad)
+    throw Error(Trouble::usage,
+                option + ": '" + text + "' is not an angle, such as 2deg, 35mrad or 0.035rad");
+  if (*value_rad > std::numbers::pi)
+    throw Error(Trouble::usage, option + ": '" + text + "' is more than half a turn, 180deg");
+  return *value_rad;
 }
 
 int run_program(int argc, char** argv, const std::vector<Command>& commands) {

@@ -32,6 +32,7 @@ class CommandLine {
   virtual void number(std::string name, double& value, double least, double most,
                       std::string help) = 0;
   virtual void length(std::string name, double& value_m, std::string help) = 0;
+  virtual void angle(std::string name, double& value_rad, std::string help) = 0;
   virtual void flag(std::string name, bool& value, std::string help) = 0;
 };
 
@@ -52,5 +53,8 @@ int run_program(int argc, char** argv, const std::vector<Command>& commands);
 
 // "2mm", "0.1m", "50um", "0.3" (metres). Throws scan::Error (usage) naming the option.
 double parse_length_m(const std::string& text, const std::string& option);
+
+// "2deg", "35mrad", "0.035rad", "0.035" (radians), at most half a turn.
+double parse_angle_rad(const std::string& text, const std::string& option);
 
 }  // namespace scan

@@ -42,6 +42,9 @@ class WordList : public CommandLine {
   void length(std::string name, double&, std::string help) override {
     options.push_back({std::move(name), {}, std::move(help)});
   }
+  void angle(std::string name, double&, std::string help) override {
+    options.push_back({std::move(name), {}, std::move(help)});
+  }
   void flag(std::string name, bool&, std::string help) override {
     options.push_back({std::move(name), {}, std::move(help), false});
   }

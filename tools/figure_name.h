@@ -11,12 +11,29 @@
 
 namespace scan {
 
-// scan::Error (input) for a name of no figure, with the nearest one.
-inline std::string read_figure(JsonReader& reader, std::string_view key) {
+inline std::string_view text_of(FigureSource source) {
+  switch (source) {
+    case FigureSource::artefact:
+      return "a data sheet (artefact_limits)";
+    case FigureSource::disparity:
+      return "a disparity";
+    case FigureSource::surface_or_run:
+      break;
+  }
+  return "a surface or a run";
+}
+
+// scan::Error (input) for a name of no figure, with the nearest one, and for a figure that what
+// will be measured does not have.
+inline std::string read_figure(JsonReader& reader, std::string_view key, FigureSource source) {
   const std::string name = reader.text(key), hint = figure_hint(name);
-  if (definition(name).empty())
+  const auto figure = figure_definition(name);
+  if (!figure)
     reader.fail(
         key, "'" + name + "' is no figure of a verdict" + (hint.empty() ? "" : " (" + hint + ")"));
+  if (figure->source != source)
+    reader.fail(key, "'" + name + "' is a figure of " + std::string(text_of(figure->source)) +
+                         ", not of " + std::string(text_of(source)));
   return name;
 }
 

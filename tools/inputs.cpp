@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "libscan/core/error.h"
@@ -32,9 +33,10 @@ void warn_of_unit(const std::string& path, double size_m, double usual_m, const 
   double factor = suspect_factors.front();
   for (const double other : suspect_factors)
     if (std::abs(std::log10(other) - off) < std::abs(std::log10(factor) - off)) factor = other;
+  char scale[32];
+  std::snprintf(scale, sizeof scale, "%.4g", size_m > usual_m ? 1 / factor : factor);
   console.warn(path + ": its size is " + readable_length(size_m) + ", that of " + whose + " is " +
-               readable_length(usual_m) + "; another unit? Then scale it by " +
-               shortest(size_m > usual_m ? 1 / factor : factor));
+               readable_length(usual_m) + "; another unit? Then scale it by " + scale);
 }
 
 }  // namespace

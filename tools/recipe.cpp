@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/recipe.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "libscan/core/error.h"
 #include "libscan/io/json_reader.h"
+#include "libscan/io/json_units.h"
 #include "tools/field_reader.h"
 #include "tools/field_writer.h"
 #include "tools/figure_name.h"
@@ -60,23 +63,44 @@ ordered_json to_json(const synth::EffectChoice& choice) {
   return choice.names;
 }
 
-// "at_most_mm", "at_least", "equals": the relation, then the unit that the figure has.
-Limit read_limit(JsonReader reader) {
-  Limit limit{.name = read_figure(reader, "name"), .relation = "", .value = 0, .reason = ""};
+// The unit that a figure's limit carries in its key, SI: "_m", "_rad" or none.
+std::string unit_suffix(const std::string& name) {
+  const std::string unit = figure_definition(name)->unit;
+  return unit == "m" || unit == "rad" ? "_" + unit : "";
+}
+
+// The number of a limit whose key is the word and a unit: "at_most_mm" of a length, "at_most_deg"
+// of an angle, "at_most" of anything else. None if there is no such key.
+std::optional<double> read_bound(JsonReader& reader, const std::string& word,
+                                 const std::string& figure) {
+  const std::string unit = unit_suffix(figure);
+  const auto known = unit == "_m"     ? unit_suffixes(Quantity::length)
+                     : unit == "_rad" ? unit_suffixes(Quantity::angle)
+                                      : std::vector<std::string>{""};
+  for (const std::string& key : reader.keys()) {
+    if (key != word && !key.starts_with(word + "_")) continue;
+    if (std::find(known.begin(), known.end(), key.substr(word.size())) == known.end())
+      reader.fail(key, "'" + figure + "' is " +
+                           (unit == "_m"     ? "a length: " + word + "_mm or such"
+                            : unit == "_rad" ? "an angle: " + word + "_deg or such"
+                                             : "without a unit: " + word));
+    return unit == "_m"     ? reader.length_m(word)
+           : unit == "_rad" ? reader.angle_rad(word)
+                            : reader.number(word);
+  }
+  return std::nullopt;
+}
+
+Limit read_limit(JsonReader reader, FigureSource source) {
+  Limit limit{
+      .name = read_figure(reader, "name", source), .relation = "", .value = 0, .reason = ""};
   for (const auto& [word, relation] :
        {std::pair("at_most", "<="), std::pair("at_least", ">="), std::pair("equals", "==")}) {
-    double value = 0;
-    if (reader.has(word))
-      value = reader.number(word);
-    else if (reader.has(std::string(word) + "_deg") || reader.has(std::string(word) + "_rad"))
-      value = reader.angle_rad(word);
-    else if (reader.has_quantity(word))
-      value = reader.length_m(word);
-    else
-      continue;
+    const auto bound = read_bound(reader, word, limit.name);
+    if (!bound) continue;
     if (!limit.relation.empty()) reader.fail(word, "is a second limit; one limit an entry");
     limit.relation = relation;
-    limit.value = value;
+    limit.value = *bound;
   }
   if (limit.relation.empty())
     reader.fail("name", "has no at_most, at_least or equals (with the unit: at_most_mm)");
@@ -85,10 +109,11 @@ Limit read_limit(JsonReader reader) {
   return limit;
 }
 
-std::vector<Limit> read_limits(JsonReader& reader, const char* key) {
+std::vector<Limit> read_limits(JsonReader& reader, const char* key, FigureSource source) {
   std::vector<Limit> limits;
   if (reader.has(key))
-    for (JsonReader& limit : reader.objects(key)) limits.push_back(read_limit(std::move(limit)));
+    for (JsonReader& limit : reader.objects(key))
+      limits.push_back(read_limit(std::move(limit), source));
   return limits;
 }
 
@@ -97,18 +122,6 @@ ordered_json to_json(const Limit& limit, const std::string& unit) {
                            : limit.relation == ">=" ? "at_least"
                                                     : "equals";
   return {{"name", limit.name}, {word + unit, limit.value}, {"reason", limit.reason}};
-}
-
-// The unit's suffix of a figure, by its name.
-std::string unit_suffix(const std::string& name) {
-  for (const char* angle : {"normal_error", "rotation_error", "cylinder_axis_error"})
-    if (name.find(angle) != std::string::npos) return "_rad";
-  for (const char* count :
-       {"components", "boundary_edges", "non_manifold_edges", "genus", "self_intersections",
-        "f_score", "ray_hit_fraction", "unsupported_area", "area_error", "volume_error"})
-    if (name == count) return "";
-  if (name.starts_with("normalised_") || name.ends_with("_within_95")) return "";
-  return "_m";
 }
 
 ordered_json to_json(const std::vector<Limit>& limits) {
@@ -158,8 +171,8 @@ Recipe read_recipe(const nlohmann::json& json, const std::string& place,
   read_part(reader, "verify", recipe.verify, Need::optional);
   if (reader.has("artefacts"))
     read_part(reader, "artefacts", recipe.artefacts.emplace(), Need::required);
-  recipe.artefact_limits = read_limits(reader, "artefact_limits");
-  recipe.limits = read_limits(reader, "limits");
+  recipe.artefact_limits = read_limits(reader, "artefact_limits", FigureSource::artefact);
+  recipe.limits = read_limits(reader, "limits", FigureSource::surface_or_run);
   (void)reader.text("about", "");
   if (reader.has("tradeoff")) (void)read_study(reader.object("tradeoff"));
   reader.finish();
@@ -167,13 +180,14 @@ Recipe read_recipe(const nlohmann::json& json, const std::string& place,
   return recipe;
 }
 
-std::vector<Limit> read_limits(const std::filesystem::path& path) {
+std::vector<Limit> read_limits(const std::filesystem::path& path, FigureSource source) {
   const nlohmann::json json = read_json(path);
   if (!json.is_array())
     throw Error(Trouble::input, path.string() + ": must be a list of limits [ {...}, ... ]");
   std::vector<Limit> limits;
   for (std::size_t i = 0; i < json.size(); ++i)
-    limits.push_back(read_limit(JsonReader(json[i], path.string() + "/" + std::to_string(i))));
+    limits.push_back(
+        read_limit(JsonReader(json[i], path.string() + "/" + std::to_string(i)), source));
   return limits;
 }
 

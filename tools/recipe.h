@@ -16,6 +16,7 @@
 #include "libscan/acquire/acquire.h"
 #include "libscan/align/multiview.h"
 #include "libscan/reconstruct/reconstruct.h"
+#include "libscan/verify/definitions.h"
 #include "libscan/verify/verdict.h"
 #include "synth/artefacts.h"
 #include "synth/effects/plan.h"
@@ -66,8 +67,8 @@ Recipe read_recipe(const std::filesystem::path& path);
 Recipe read_recipe(const nlohmann::json& json, const std::string& place,
                    const std::filesystem::path& folder);
 
-// A JSON list of limits, as a recipe has them.
-std::vector<Limit> read_limits(const std::filesystem::path& path);
+// A JSON list of limits, as a recipe has them, on figures of what is measured.
+std::vector<Limit> read_limits(const std::filesystem::path& path, FigureSource source);
 
 // With all defaults filled in, SI units; reading it back gives the same recipe. Meshes are named by
 // their absolute path.

@@ -9,6 +9,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/json_output.h"
 #include "libscan/io/poses.h"
+#include "libscan/io/scan_file.h"
 #include "libscan/io/stated_poses_file.h"
 #include "libscan/io/surface_file.h"
 #include "libscan/reconstruct/dual_mesh.h"
@@ -115,6 +116,7 @@ void tell_of_work(const SurfaceResult& result, Console& console) {
 int reconstruct_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
   check_output(output);
+  check_mesh_ending(output);
   if (arguments.quads && std::filesystem::path(output).extension() == ".stl")
     throw Error(Trouble::usage, "--quads: " + output + " can hold triangles only",
                 "PLY, OBJ and OFF hold quads");

@@ -101,7 +101,7 @@ Study read_study(JsonReader reader) {
   study.seeds = static_cast<int>(reader.integer("seeds", study.seeds));
   if (study.seeds < 1 || study.seeds > 1000)
     reader.fail("seeds", "is " + std::to_string(study.seeds) + ", must be 1 to 1000");
-  if (reader.has("error")) study.error = read_figure(reader, "error");
+  if (reader.has("error")) study.error = read_figure(reader, "error", FigureSource::surface_or_run);
   study.seconds = reader.text("seconds", study.seconds);
   const std::vector<std::string>& stages = timed_stages();
   if (std::find(stages.begin(), stages.end(), study.seconds) == stages.end())

@@ -81,7 +81,10 @@ bool meets_tolerance(const StudyResult& result) {
 
 std::string advice_text(const StudyResult& result, const CaseResult& in) {
   const std::string where = in.name.empty() ? "" : in.name + ": ";
-  if (!in.chosen) return where + "Every run failed: " + in.points.front().trouble + ".";
+  if (!in.chosen) {
+    const std::string& trouble = in.points.front().trouble;
+    return where + "Every run failed: " + trouble + (trouble.ends_with("?") ? "" : ".");
+  }
   const StudyPoint& point = in.points[*in.chosen];
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.3g", point.seconds);

@@ -178,18 +178,23 @@ void refuse_unused(const Arguments& arguments) {
 
 int verify(const Arguments& arguments, Console& console) {
   refuse_unused(arguments);
+  if (!arguments.picture.empty()) check_output(arguments.picture);
   if (arguments.artefacts) return verify_artefacts(arguments, console);
   const Stopwatch watch;
   Verdict verdict;
   if (std::filesystem::is_directory(arguments.measured)) {
     verdict = verify_run(arguments.measured, console);
   } else {
+    if (!std::filesystem::exists(arguments.measured))
+      throw Error(Trouble::input, arguments.measured + ": no such file or folder");
     if (arguments.truth.empty())
       throw Error(Trouble::usage, "--truth is needed unless MEASURED is a run folder");
     if (arguments.poses.empty() != arguments.true_poses.empty())
       throw Error(Trouble::usage, "--poses and --true-poses go together");
+    const auto source =
+        is_disparity(arguments.measured) ? FigureSource::disparity : FigureSource::surface_or_run;
     const auto limits =
-        arguments.limits.empty() ? std::vector<Limit>{} : read_limits(arguments.limits);
+        arguments.limits.empty() ? std::vector<Limit>{} : read_limits(arguments.limits, source);
     verdict = judge(measure_files(arguments, console), limits);
   }
   console.time("verify", watch.seconds());

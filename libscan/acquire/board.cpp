@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "libscan/core/error.h"
+#include "libscan/core/shortest.h"
 
 namespace scan {
 namespace {
@@ -41,6 +42,8 @@ std::string why_missing(const cv::Mat& picture, const Board& board) {
   if (!any || meta.cols * meta.rows < 9) return "shows no board of " + wanted + " inner corners";
   int columns = std::max(meta.cols, meta.rows), rows = std::min(meta.cols, meta.rows);
   if (board.columns < board.rows) std::swap(columns, rows);
+  if (columns == board.columns && rows == board.rows)
+    return "shows the board too obliquely or too dimly to find all of its corners";
   return "shows a board of " + size_text(columns, rows) + " inner corners, not " + wanted;
 }
 
@@ -62,7 +65,7 @@ void check(const Board& board) {
                                       ", must be 3 to 1000 inner corners");
   if (!(board.square_m > 0) || !std::isfinite(board.square_m))
     throw Error(Trouble::usage,
-                "board/square_m: is " + std::to_string(board.square_m) + ", must be positive");
+                "board/square_m: is " + shortest(board.square_m) + ", must be positive");
 }
 
 std::vector<Eigen::Vector3d> corners_m(const Board& board) {

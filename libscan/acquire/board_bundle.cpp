@@ -255,7 +255,8 @@ BundleFit adjust(const Bundle& guess) {
     const Bundle trial = moved(fit.bundle, step);
     const double trial_squares = squares_of(trial);
     // the rest of the way is less than a thousandth of a sigma, or below rounding
-    fit.converged = predicted_decrease(equations, step) <= 1e-12 * squares + 1e-20;
+    fit.converged =
+        std::isfinite(squares) && predicted_decrease(equations, step) <= 1e-12 * squares + 1e-20;
     if (trial_squares < squares) {
       fit.bundle = trial;
       squares = trial_squares;

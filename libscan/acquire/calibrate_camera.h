@@ -21,8 +21,9 @@ struct CalibrateOptions {
   // A picture whose rms is so many times the median's is left out: its corners are not the board's,
   // or the board was bent. For more than 50 corners chance moves an rms by a tenth.
   double max_rms_ratio = 3;
-  // Largest standard deviation of focal length and centre, as a share of the focal length; above it
-  // the pictures do not determine the camera. Useful calibrations reach 0.001.
+  // Largest standard deviation of focal length and centre, as a share of the focal length, and of a
+  // baseline, as a share of it; above it the pictures do not determine the camera or the pair.
+  // Useful calibrations reach 0.001.
   double max_relative_sigma = 0.05;
 };
 

@@ -95,6 +95,17 @@ void fill_figures(const BundleFit& fit, RigCalibration& result) {
     }
 }
 
+// Cameras at one place see no depth: the right pictures were the left ones.
+void check_baseline(const RigCalibration& found, double max_relative_sigma) {
+  if (found.baseline_sigma_m <= max_relative_sigma * found.baseline_m) return;
+  const auto in_um = [](double metres) { return std::to_string(std::lround(1e6 * metres)); };
+  throw Error(Trouble::computation,
+              "stereo rig: its baseline is " + in_um(found.baseline_m) + " um with a sigma of " +
+                  in_um(found.baseline_sigma_m) + " um, which must be at most " +
+                  std::to_string(std::lround(100 * max_relative_sigma)) + " % of it",
+              "are the right pictures those of the right camera?");
+}
+
 }  // namespace
 
 RigCalibration calibrate_stereo(const Board& board, std::span<const BoardPair> pairs,
@@ -120,6 +131,7 @@ RigCalibration calibrate_stereo(const Board& board, std::span<const BoardPair> p
                                 options.max_relative_sigma);
   calibrating::check_determined("right camera", result.rig.right,
                                 result.covariance.block<9, 9>(9, 9), options.max_relative_sigma);
+  check_baseline(result, options.max_relative_sigma);
   result.coverage_left = calibrating::coverage(board, left, used);
   result.coverage_right = calibrating::coverage(board, right, used);
   return result;

@@ -21,6 +21,11 @@ constexpr double least_cosine = 0.7;  // of 45 degrees
   throw Error(Trouble::input, "stereo rig: " + what);
 }
 
+// To a tenth of a millimetre.
+std::string rounded(double metres) {
+  return shortest(std::round(1e4 * metres) / 1e4);
+}
+
 void check(const StereoRig& rig, double nearest_m, double farthest_m) {
   check(rig.left);
   check(rig.right);
@@ -37,8 +42,9 @@ Eigen::Matrix3d rectified_from_left(const StereoRig& rig) {
   const Eigen::Vector3d baseline = -left_from_right * rig.right_from_left.translation();
   const Eigen::Vector3d x = baseline.normalized();
   if (!(x.x() >= least_cosine))
-    refuse("the right camera stands at " + shortest(baseline.x()) + " m to the right and " +
-           shortest(std::hypot(baseline.y(), baseline.z())) + " m beside, must be to the right");
+    refuse("the right camera stands at " + rounded(baseline.x()) + " m to the right and " +
+           rounded(std::hypot(baseline.y(), baseline.z())) + " m beside, must be to the right" +
+           (baseline.x() < 0 ? "; are left and right exchanged?" : ""));
   if (!(left_from_right(2, 2) >= least_cosine)) refuse("the cameras look past each other");
   const Eigen::Vector3d forwards = Eigen::Vector3d::UnitZ() + left_from_right.col(2);
   Eigen::Matrix3d rows;

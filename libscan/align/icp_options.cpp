@@ -3,6 +3,7 @@
 // Names and limits of what icp.h declares.
 #include "libscan/align/icp.h"
 #include "libscan/core/error.h"
+#include "libscan/core/shortest.h"
 
 namespace scan {
 
@@ -49,7 +50,7 @@ void check(const IcpOptions& options) {
   const auto need = [](bool good, const char* name, double value, const char* limit) {
     if (!good)
       throw Error(Trouble::usage,
-                  std::string("icp: ") + name + ": " + std::to_string(value) + ", " + limit);
+                  std::string("icp: ") + name + ": " + shortest(value) + ", " + limit);
   };
   need(options.max_pair_distance_m >= 0, "max_pair_distance_m", options.max_pair_distance_m,
        "must be at least 0");

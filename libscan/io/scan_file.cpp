@@ -29,6 +29,14 @@ std::string ending_of(const std::filesystem::path& path) {
                            "' is not one of " + known);
 }
 
+[[noreturn]] void refuse_scan_ending(const std::filesystem::path& path) {
+  refuse_ending(path, Trouble::output, ".ply .pcd .xyz .txt .asc");
+}
+
+[[noreturn]] void refuse_mesh_ending(const std::filesystem::path& path) {
+  refuse_ending(path, Trouble::output, ".ply .obj .stl .off");
+}
+
 PointCloud cloud_from_array(const std::filesystem::path& path) {
   const NumberArray array = read_npy(path);
   if (array.shape.size() != 2)
@@ -121,7 +129,21 @@ void write_scan(const std::filesystem::path& path, const Scan& scan) {
   else if (ending == ".xyz" || ending == ".txt" || ending == ".asc")
     write_xyz(path, scan.cloud);
   else
-    refuse_ending(path, Trouble::output, ".ply .pcd .xyz .txt .asc");
+    refuse_scan_ending(path);
+}
+
+void check_scan_ending(const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  for (const char* known : {".ply", ".pcd", ".xyz", ".txt", ".asc"})
+    if (ending == known) return;
+  refuse_scan_ending(path);
+}
+
+void check_mesh_ending(const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  for (const char* known : {".ply", ".obj", ".stl", ".off"})
+    if (ending == known) return;
+  refuse_mesh_ending(path);
 }
 
 TexturedMesh read_textured_mesh(const std::filesystem::path& path) {
@@ -150,7 +172,7 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
   else if (ending == ".stl")
     write_file(path, stl_bytes(mesh));
   else
-    refuse_ending(path, Trouble::output, ".ply .obj .stl .off");
+    refuse_mesh_ending(path);
 }
 
 bool holds_triangles(const std::filesystem::path& path) {

@@ -31,6 +31,10 @@ TexturedMesh read_textured_mesh(const std::filesystem::path& path);
 // .ply .obj .stl .off; written whole or not at all.
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 
+// scan::Error (output) unless write_scan or write_mesh know the ending: before long work starts.
+void check_scan_ending(const std::filesystem::path& path);
+void check_mesh_ending(const std::filesystem::path& path);
+
 // True if the file holds triangles (a mesh), false if points only.
 bool holds_triangles(const std::filesystem::path& path);
 

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "libscan/core/error.h"
+#include "libscan/core/shortest.h"
 #include "libscan/reconstruct/collapsing_mesh.h"
 #include "libscan/reconstruct/support.h"
 #include "libscan/search/hausdorff.h"
@@ -240,7 +241,7 @@ void carry_over(const Mesh& from, SurfaceResult& result) {
 DecimateReport decimate(SurfaceResult& result, double tolerance_m) {
   if (!(tolerance_m > 0))
     throw Error(Trouble::usage,
-                "decimate: tolerance is " + std::to_string(tolerance_m) + " m, must be above 0");
+                "decimate: tolerance is " + shortest(tolerance_m) + " m, must be above 0");
   DecimateReport report{.tolerance_m = tolerance_m,
                         .triangles_before = result.surface.triangles.size()};
   if (result.surface.empty()) return report;

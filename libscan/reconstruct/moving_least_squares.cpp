@@ -9,6 +9,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "libscan/core/shortest.h"
 #include "libscan/reconstruct/algebraic_sphere.h"
 #include "libscan/reconstruct/followed_surface.h"
 #include "libscan/reconstruct/samples.h"
@@ -182,7 +183,7 @@ int depth_for(double support, const MlsOptions& options) {
 void require(bool fulfilled, const char* field, double value, const char* limit) {
   if (!fulfilled)
     throw Error(Trouble::usage,
-                std::string("mls: ") + field + " is " + std::to_string(value) + ", limit " + limit);
+                std::string("mls: ") + field + " is " + shortest(value) + ", limit " + limit);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "libscan/core/shortest.h"
 #include "libscan/reconstruct/followed_surface.h"
 #include "libscan/reconstruct/ray_bricks.h"
 #include "libscan/reconstruct/world_surface.h"
@@ -160,8 +161,8 @@ Eigen::Vector3d cut_at_cube(const Eigen::Vector3d& from, const Eigen::Vector3d& 
 
 void require(bool fulfilled, const char* field, double value, const char* limit) {
   if (!fulfilled)
-    throw Error(Trouble::usage, std::string("range-fusion: ") + field + " is " +
-                                    std::to_string(value) + ", limit " + limit);
+    throw Error(Trouble::usage, std::string("range-fusion: ") + field + " is " + shortest(value) +
+                                    ", limit " + limit);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "libscan/core/error.h"
 #include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
+#include "libscan/core/shortest.h"
 #include "libscan/reconstruct/bilateral_samples.h"
 #include "libscan/reconstruct/isosurface.h"
 #include "libscan/reconstruct/local_smoothing.h"
@@ -26,7 +27,7 @@ constexpr double least_support = 1e-3;  // of the data's area, for a component t
 void require(bool fulfilled, const char* field, double value, const char* limit) {
   if (!fulfilled)
     throw Error(Trouble::usage,
-                std::string("ssd: ") + field + " is " + std::to_string(value) + ", limit " + limit);
+                std::string("ssd: ") + field + " is " + shortest(value) + ", limit " + limit);
 }
 
 bool is_length(double x) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/calib3d.hpp>
 
 #include "libscan/acquire/board_start.h"
@@ -87,6 +88,66 @@ TEST(BoardBundle, FindsWhatOpenCvFindsWithItsDeviations) {
     EXPECT_NEAR(factor * deviations.at<double>(i), sigma, 0.01 * sigma) << i;
   }
   EXPECT_NEAR(fit.rms_px, rms_px, 1e-6);
+}
+
+double rms_px(const Bundle& bundle) {
+  double sum = 0, count = 0;
+  for (const BoardPicture& picture : bundle.pictures)
+    for (std::size_t k = 0; k < bundle.board_m.size(); ++k, ++count)
+      sum += (project(bundle.cameras[0], picture.first_from_board * bundle.board_m[k]).value() -
+              picture.corners_px[0][k])
+                 .squaredNorm();
+  return std::sqrt(sum / count);
+}
+
+// From poses up to a radian off, where full steps lead astray, with the camera sought, too: none
+// ends farther off than it began, as each step is taken only if it leads down.
+TEST(BoardBundle, NeverEndsWorseThanItBegan) {
+  RandomStream random(4, 0, 0);
+  const std::vector<Pose> poses = held_boards(bent_camera(), test_board, 3, 3);
+  for (int i = 0; i < 50; ++i) {
+    Bundle guess{.board_m = corners_m(test_board), .cameras = {bent_camera()}};
+    for (const Pose& pose : poses) {
+      const BoardSighting seen = test::sighting(bent_camera(), test_board, pose, 0.1, random);
+      const Eigen::Translation3d middle(pose * Eigen::Vector3d(0.08, 0.05, 0));
+      Vector6 off;
+      for (int k = 0; k < 6; ++k) off[k] = (k < 3 ? 1 : 0.1) * (2 * random.uniform() - 1);
+      guess.pictures.push_back({{seen.corners_px}, middle * exp(off) * middle.inverse() * pose});
+    }
+    const BundleFit fit = adjust(guess);
+    EXPECT_LE(fit.rms_px, rms_px(guess)) << i;
+  }
+}
+
+// A guess that has corners behind the camera, where no pixel is, is of infinite cost: any step
+// would be small beside it, but none is an end.
+TEST(BoardBundle, CallsNoGuessBehindTheCameraConverged) {
+  const Pose truth = test::held_board(bent_camera(), test_board, {450, 305}, 0.25, 0.4, 1);
+  RandomStream random(1, 0, 0);
+  const BoardSighting seen = test::sighting(bent_camera(), test_board, truth, 0, random);
+  Bundle bundle{
+      .board_m = corners_m(test_board), .cameras = {bent_camera()}, .fixed_cameras = true};
+  bundle.pictures.push_back({{seen.corners_px}, Eigen::Translation3d(0, 0, -0.25) * truth});
+  const BundleFit fit = adjust(bundle);
+  EXPECT_TRUE(!fit.converged || std::isfinite(fit.rms_px));
+}
+
+// Near the solution the distance to it is squared by each step (damping falls tenfold with it):
+// from a hundredth of a radian to rounding in a few.
+TEST(BoardBundle, ConvergesInAFewSteps) {
+  RandomStream random(2, 0, 0);
+  Bundle bundle{.board_m = corners_m(test_board), .cameras = {bent_camera()}};
+  for (const Pose& pose : held_boards(bent_camera(), test_board, 3, 6)) {
+    const BoardSighting seen = test::sighting(bent_camera(), test_board, pose, 0, random);
+    Vector6 off;
+    for (int i = 0; i < 6; ++i) off[i] = (i < 3 ? 1e-2 : 1e-3) * random.normal();
+    bundle.pictures.push_back({{seen.corners_px}, exp(off) * pose});
+  }
+  bundle.cameras[0].fx_px *= 1.03;
+  const BundleFit fit = adjust(bundle);
+  EXPECT_TRUE(fit.converged);
+  EXPECT_LE(fit.iterations, 8);
+  EXPECT_LT((unknowns_of(fit.bundle.cameras[0]) - unknowns_of(bent_camera())).norm(), 1e-6);
 }
 
 TEST(BoardBundle, NeedsMoreCoordinatesThanUnknowns) {

@@ -162,6 +162,19 @@ TEST(CalibrateCamera, NamesTheShareThatBoardsCover) {
               180.0 * 113 / (800 * 600), 0.005);
 }
 
+// A focal length off by 1 px moves the pixel of a ray by its column's distance from the centre in
+// units of the focal length: most at the left border, 404 px away, and nothing downwards.
+TEST(CalibrateCamera, NamesTheLargestSigmaOfARay) {
+  Camera straight = bent_camera();
+  straight.k1 = straight.k2 = straight.p1 = straight.p2 = 0;
+  straight.cx_px = 404;  // 395 from the right border
+  CameraCovariance covariance = CameraCovariance::Zero();
+  covariance(0, 0) = 4;
+  EXPECT_NEAR(calibrating::largest_ray_sigma_px(straight, covariance), 2 * 404.0 / 900, 1e-12);
+  covariance(3, 3) = 9;
+  EXPECT_NEAR(calibrating::largest_ray_sigma_px(straight, covariance), 3, 1e-12);
+}
+
 TEST(CalibrateCamera, LeavesOutAPictureOfAnotherBoardAndSaysSo) {
   auto seen = sightings(held_boards(bent_camera(), test_board, 13, 8), 0.1, 1);
   for (auto& corner : seen[3].corners_px) corner.x() += 1.5 * std::sin(corner.y() / 30);

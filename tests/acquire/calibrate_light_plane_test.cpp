@@ -94,6 +94,42 @@ TEST(CalibrateLightPlane, ErrorsAreAsLargeAsTheCovarianceSays) {
   EXPECT_NEAR(misfit2, 1, 0.04);
 }
 
+LightPlaneCalibration calibrated(double stated_sigma_px, double noise_px, std::uint64_t seed) {
+  RandomStream random(seed, 0, 0);
+  std::vector<StripeOnBoard> seen;
+  for (const Pose& pose : boards_in_light()) {
+    seen.push_back(seen_stripe(pose, 0, noise_px, random));
+    for (StripePixel& pixel : seen.back().stripe) pixel.sigma_px = stated_sigma_px;
+  }
+  return calibrate_light_plane(test_board, bent_camera(), CameraCovariance::Zero(), seen);
+}
+
+// Stripes five times as noisy as they say, on boards known to the least sigma of a corner, 0.01 px:
+// the misfit makes good for it. Chi-square as above; the boards' share of the covariance, which is
+// inflated, too, lowers it by far less than the limit.
+TEST(CalibrateLightPlane, NoiseThatIsNotStatedIsSeenInTheMisfit) {
+  constexpr int sets = 100;
+  double sum = 0;
+  for (int seed = 0; seed < sets; ++seed) {
+    const auto found = calibrated(0.1, 0.5, seed);
+    Eigen::Matrix3d covariance;
+    const Eigen::Vector3d error = normalised(found, covariance);
+    sum += error.dot(covariance.ldlt().solve(error));
+  }
+  EXPECT_NEAR(sum, 3 * sets, 4 * std::sqrt(6.0 * sets));
+}
+
+// Stripes quieter than they say are chance or the board's evenness, not a better device: without
+// noise the deviations are those of the stated sigma, twice as much for twice that, boards aside.
+TEST(CalibrateLightPlane, ASmallMisfitPromisesNothing) {
+  const auto quiet = calibrated(1, 0, 1), twice = calibrated(2, 0, 1);
+  ASSERT_LT(quiet.misfit, 0.1);
+  Eigen::Matrix3d one, four;
+  normalised(quiet, one);
+  normalised(twice, four);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(four(i, i) / one(i, i), 4, 0.1);
+}
+
 // Camera and plane from noisy pictures of the same board: depths of a plane at 0.3 m, read by the
 // calibrated device, are off by what the joint covariance says. Their normalised squares have mean
 // 1; over 60 sets (points of one set share their error) the standard deviation is sqrt(2 / 60).

@@ -200,6 +200,20 @@ TEST(CalibrateStereo, SaysWhichPictureOfAPairFailed) {
   EXPECT_GT(found.pairs[3].rms_px, 0.05);
 }
 
+// The left pictures given twice, as by a slip in a shell pattern: cameras at one place.
+TEST(CalibrateStereo, RefusesTwoEyesAtOnePlace) {
+  auto pairs = noisy_pairs(0.1, 1);
+  for (BoardPair& pair : pairs) pair.right = pair.left;
+  try {
+    calibrate_stereo(test_board, pairs);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.trouble(), Trouble::computation);
+    EXPECT_TRUE(std::string(error.what()).starts_with("stereo rig: its baseline is 0 um"))
+        << error.what();
+  }
+}
+
 TEST(CalibrateStereo, WantsABoardWithOneOrientation) {
   try {
     calibrate_stereo({.columns = 8, .rows = 6, .square_m = 0.02}, noisy_pairs(0.1, 1));

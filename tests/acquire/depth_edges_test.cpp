@@ -31,15 +31,32 @@ TEST(NearDepthEdge, IsNowhereOnOneSurface) {
   EXPECT_EQ(count(near_depth_edge(ramp(60, 40), 8)), 0u);
 }
 
-TEST(NearDepthEdge, IsTheMarginOnBothSidesOfAStep) {
-  Image<float> disparity(60, 40, 20);
-  for (int row = 0; row < 40; ++row)
-    for (int column = 30; column < 60; ++column) disparity(column, row) = 25;
+// Where a step of the given height at 30 is marked, along columns or rows, with a margin of 4 px.
+std::vector<bool> marked_at_a_step(float height_px, bool along_rows) {
+  Image<float> disparity(60, 60, 20);
+  for (int i = 0; i < 60; ++i)
+    for (int beyond = 30; beyond < 60; ++beyond)
+      (along_rows ? disparity(i, beyond) : disparity(beyond, i)) = 20 + height_px;
   const auto near = near_depth_edge(disparity, 4);
-  // Pairs one and two columns apart straddle the step: columns 28 to 31 are its edge.
-  for (int column = 0; column < 60; ++column)
-    EXPECT_EQ(near[disparity.index(column, 20)] != 0, column >= 28 - 4 && column <= 31 + 4)
-        << column;
+  std::vector<bool> marked;
+  for (int i = 0; i < 60; ++i)
+    marked.push_back(near[along_rows ? disparity.index(20, i) : disparity.index(i, 20)] != 0);
+  return marked;
+}
+
+// Pairs one and two pixels apart straddle the step: 28 to 31 are its edge. One apart they may
+// differ by 1 + 0.5 px, two apart by 1 + 2 * 0.5.
+TEST(NearDepthEdge, IsTheMarginOnBothSidesOfAStep) {
+  for (const bool along_rows : {false, true}) {
+    const auto high = marked_at_a_step(5, along_rows), low = marked_at_a_step(1.6F, along_rows),
+               none = marked_at_a_step(1.4F, along_rows);
+    for (int i = 0; i < 60; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      EXPECT_EQ(high[at], i >= 28 - 4 && i <= 31 + 4) << i;
+      EXPECT_EQ(low[at], i >= 29 - 4 && i <= 30 + 4) << i;
+      EXPECT_FALSE(none[at]) << i;
+    }
+  }
 }
 
 TEST(NearDepthEdge, SurroundsHolesButNotSingleMisses) {

@@ -113,6 +113,28 @@ TEST(StripeShift, BesideAHoleCountsBrightness) {
       << "the body ends on either side";
 }
 
+// Four widths of 1.9 columns are four steps of two, three widths would be three.
+TEST(StripeShift, LooksFourWidthsFar) {
+  Sweep sweep = sweep_over_a_plane(25);
+  for (LitRay& ray : sweep.rays) ray.width_px = 1.9;
+  sweep.rays[12] = {};
+  for (const std::size_t ray : {8u, 16u})
+    EXPECT_NEAR(stripe_shift(sweep.frames, sweep.rays, ray)->unknown_px, 0.15 * 1.9, 1e-9) << ray;
+  for (const std::size_t ray : {7u, 17u})
+    EXPECT_NEAR(stripe_shift(sweep.frames, sweep.rays, ray)->unknown_px, 0, 1e-9) << ray;
+}
+
+// Brightness that grows by a tenth in its logarithm from step to step, two columns: half a tenth a
+// column, times the width squared. At the sweep's ends two places on one side must tell it.
+TEST(StripeShift, AtTheEndsOfTheSweepIsToldFromOneSide) {
+  Sweep sweep = sweep_over_a_plane(25);
+  for (std::size_t ray = 0; ray < sweep.rays.size(); ++ray)
+    sweep.rays[ray].height_e = 1000 * std::exp(0.1 * static_cast<double>(ray));
+  for (std::size_t ray = 0; ray < sweep.rays.size(); ++ray)
+    EXPECT_NEAR(stripe_shift(sweep.frames, sweep.rays, ray)->shift_px, 0.05 * 1.5 * 1.5, 1e-9)
+        << ray;
+}
+
 // The last stripe before a hole is a place if it is as wide as those farther in, and none if the
 // edge has taken a part of it.
 TEST(StripeShift, OfACutStripeIsNotKnown) {

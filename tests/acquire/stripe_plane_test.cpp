@@ -77,6 +77,20 @@ TEST(StripePlane, IsOffByWhatPosesAndColumnsAreOff) {
   EXPECT_NEAR(misfit2, 1, 4 * std::sqrt(2.0 / (161 * fits)));
 }
 
+// Corners of a square that lie off the plane x = 0 by +a and -a in turn: the fit stays where it is,
+// chi-square is 4 (a / sigma)^2 and one degree of freedom is left. Boards known to 1e-12 m and rad
+// follow the points by a millionth of sigma.
+TEST(StripePlane, MisfitCountsItsThreeUnknowns) {
+  constexpr double a_m = 2e-6, sigma_m = 1e-6;
+  BoardStripe stripe{{}, -Eigen::Vector3d::UnitZ(), 1e-24 * Matrix6::Identity()};
+  for (int i = 0; i < 4; ++i)
+    stripe.points.push_back(
+        {{i == 0 || i == 3 ? a_m : -a_m, i % 2 ? 0.1 : -0.1, i / 2 ? 0.4 : 0.3}, {sigma_m, 0, 0}});
+  const StripePlane plane = fit_stripe_plane(std::span(&stripe, 1), 0.05);
+  EXPECT_NEAR(plane.misfit, 2 * a_m / sigma_m, 1e-4);
+  EXPECT_NEAR(plane.rms_m, a_m, 1e-4 * a_m);
+}
+
 // Spread is that of the points across their longest direction, in their own plane.
 TEST(StripePlane, TellsHowFarTheStripesSpread) {
   BoardStripe stripe{{}, -Eigen::Vector3d::UnitZ(), 1e-6 * Matrix6::Identity()};

@@ -280,23 +280,5 @@ TEST(Icp, PreparedCloudsGiveTheSame) {
   EXPECT_EQ(icp(source, target, guess).target_from_source.matrix(), once.matrix());
 }
 
-TEST(Icp, RefusesOptionsBeyondTheirLimits) {
-  const PointCloud cloud = test::bumpy_surface(100, 17);
-  EXPECT_THROW(icp(cloud, cloud, Pose::Identity(), {.max_pair_distance_m = -1}), Error);
-  EXPECT_THROW(icp(cloud, cloud, Pose::Identity(), {.trim_fraction = 1}), Error);
-  EXPECT_THROW(icp(cloud, cloud, Pose::Identity(), {.max_iterations = 0}), Error);
-  EXPECT_THROW(icp(cloud, cloud, Pose::Identity(), {.min_overlap = 1.1}), Error);
-  EXPECT_THROW(icp(cloud, cloud, Pose::Identity(), {.stop_rotation_rad = std::nan("")}), Error);
-  Pose bad = Pose::Identity();
-  bad.translation().x() = std::nan("");
-  EXPECT_THROW(icp(cloud, cloud, bad), Error);
-}
-
-TEST(IcpMethod, NamesGoThereAndBack) {
-  for (const IcpMethod method : icp_methods) EXPECT_EQ(icp_method_from(name_of(method)), method);
-  EXPECT_FALSE(icp_method_from("nearest"));
-  EXPECT_EQ(name_of(Stop::no_correspondences), "no correspondences");
-}
-
 }  // namespace
 }  // namespace scan

@@ -63,9 +63,7 @@ HardCase mixed_density(const std::string& name, double noise_m, std::set<Stop> w
   return made;
 }
 
-}  // namespace
-
-std::vector<HardCase> input_cases() {
+std::vector<HardCase> cases_of_points() {
   std::vector<HardCase> cases;
   for (const double share : {0.01, 0.5}) {
     cases.push_back(bumpy(share < 0.1 ? "H1 1 % not finite" : "H1 50 % not finite"));
@@ -79,24 +77,39 @@ std::vector<HardCase> input_cases() {
     std::iota(first.begin(), first.end(), 0u);
     cases.back().source = subset(cases.back().source, first);
   }
-  cases.push_back(bumpy("H3 no overlap", {Stop::no_correspondences}));
-  cases.back().guess = Eigen::Translation3d(100, 0, 0) * cases.back().guess;
-  cases.push_back(bumpy("H4 two iterations", {Stop::iteration_limit}));
-  cases.back().options.max_iterations = 2;
   cases.push_back(bumpy("H13 all tenfold"));
   for (PointCloud* cloud : {&cases.back().source, &cases.back().target}) {
     const PointCloud once = *cloud;
     for (int i = 0; i < 9; ++i) append(*cloud, once);
   }
+  return cases;
+}
+
+std::vector<HardCase> cases_of_guesses() {
+  std::vector<HardCase> cases;
+  cases.push_back(bumpy("H3 no overlap", {Stop::no_correspondences}));
+  cases.back().guess = Eigen::Translation3d(100, 0, 0) * cases.back().guess;
+  cases.push_back(bumpy("H4 two iterations", {Stop::iteration_limit}));
+  cases.back().options.max_iterations = 2;
+  cases.push_back(bumpy("H23 sheared guess"));
+  cases.back().guess.linear()(0, 1) += 0.01;
+  return cases;
+}
+
+std::vector<HardCase> cases_of_normals() {
+  std::vector<HardCase> cases;
   cases.push_back(bumpy("H16 half of normals flipped"));
   for (std::size_t i = 0; i < cases.back().source.size(); i += 2)
     cases.back().source.normals[i] *= -1;
   cases.push_back(bumpy("H16 normals 30 degrees off"));
   for (Vector3d& n : cases.back().source.normals)
     n = Eigen::AngleAxisd(0.52, Vector3d::UnitX()) * n;
-  cases.push_back(bumpy("H23 sheared guess"));
-  cases.back().guess.linear()(0, 1) += 0.01;
-  // Terraces of planes, all facing the same way: where a cloud lies along them is lost.
+  return cases;
+}
+
+// Terraces of planes, all facing the same way: where a cloud lies along them is lost.
+std::vector<HardCase> terraces() {
+  std::vector<HardCase> cases;
   for (const int spacings : {2, 5}) {
     cases.push_back(
         bumpy("steps of " + std::to_string(spacings) + " spacings", {Stop::degenerate}));
@@ -107,6 +120,15 @@ std::vector<HardCase> input_cases() {
       cloud->normals.clear();
     }
   }
+  return cases;
+}
+
+}  // namespace
+
+std::vector<HardCase> input_cases() {
+  std::vector<HardCase> cases;
+  for (const auto& some : {cases_of_points(), cases_of_guesses(), cases_of_normals(), terraces()})
+    cases.insert(cases.end(), some.begin(), some.end());
   return cases;
 }
 

@@ -124,17 +124,11 @@ PointCloud lattice() {
   return cloud;
 }
 
-}  // namespace
-
 // Samples of the torus lie 0.083 apart: surfaces within a third of that are right.
-std::vector<HardCase> hard_cases() {
-  constexpr double near = 0.083 / 3;
-  const PointCloud torus = torus_cloud(2000);
+constexpr double near = 0.083 / 3;
+
+std::vector<HardCase> cases_of_one_torus(const PointCloud& torus) {
   const Eigen::Vector3d far(1e7, -1e7, 1e7);
-  const auto from_plane = [](const Eigen::Vector3d& x) { return std::abs(x[2]); };
-  PointCloud one_place;
-  one_place.points.assign(100, Eigen::Vector3d(1, 2, 3));
-  one_place.normals.assign(100, Eigen::Vector3d::UnitX());
   return {
       {"plain", torus, Answer::surface, from_torus, near},
       {"no normals", without_normals(torus), Answer::surface, from_torus, near},
@@ -145,6 +139,12 @@ std::vector<HardCase> hard_cases() {
        [](const Eigen::Vector3d& x) { return 1e6 * from_torus(1e-6 * x); }, 1e6 * near},
       {"1e7 m away", moved(torus, 1, far), Answer::surface,
        [far](const Eigen::Vector3d& x) { return from_torus(x - far); }, near},
+  };
+}
+
+std::vector<HardCase> cases_of_shapes(const PointCloud& torus) {
+  const auto from_plane = [](const Eigen::Vector3d& x) { return std::abs(x[2]); };
+  return {
       {"coplanar", plane_cloud(0, 1), Answer::either, from_plane, 0.01},
       {"two sheets", two_sheets(), Answer::either,
        [](const Eigen::Vector3d& x) { return std::min(std::abs(x[2]), std::abs(x[2] - 0.04)); },
@@ -167,11 +167,30 @@ std::vector<HardCase> hard_cases() {
       {"points on cell corners", lattice(), Answer::surface,
        [](const auto& x) { return std::abs(from_cube(x)); }, 1.0 / 16},
       {"contradictory normals", contradictory(torus), Answer::either, from_torus, near},
+  };
+}
+
+std::vector<HardCase> cases_without_a_surface(const PointCloud& torus) {
+  PointCloud one_place;
+  one_place.points.assign(100, Eigen::Vector3d(1, 2, 3));
+  one_place.normals.assign(100, Eigen::Vector3d::UnitX());
+  return {
       {"collinear", line_cloud(), Answer::error, {}, 0},
       {"identical", one_place, Answer::error, {}, 0},
       {"three points", subset(torus, std::vector<std::uint32_t>{1, 2, 3}), Answer::error, {}, 0},
       {"empty", {}, Answer::error, {}, 0},
   };
+}
+
+}  // namespace
+
+std::vector<HardCase> hard_cases() {
+  const PointCloud torus = torus_cloud(2000);
+  std::vector<HardCase> cases;
+  for (const auto& some :
+       {cases_of_one_torus(torus), cases_of_shapes(torus), cases_without_a_surface(torus)})
+    cases.insert(cases.end(), some.begin(), some.end());
+  return cases;
 }
 
 std::vector<Eigen::Vector3d> scanners_of(const PointCloud& cloud) {

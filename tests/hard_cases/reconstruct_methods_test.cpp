@@ -8,6 +8,7 @@
 #include "libscan/core/error.h"
 #include "libscan/reconstruct/reconstruct.h"
 #include "tests/hard_cases/reconstruct_cases.h"
+#include "tests/reconstruct/method_names.h"
 
 namespace scan {
 namespace {
@@ -59,13 +60,7 @@ TEST_P(HardCases, EndInARightSurfaceOrAClearError) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, HardCases,
-                         testing::Range<std::size_t>(0, reconstruct_method_names().size()),
-                         [](const auto& index) {
-                           std::string name = reconstruct_method_names()[index.param];
-                           std::erase(name, '-');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, HardCases, test::each_method(), test::method_name);
 
 }  // namespace
 }  // namespace scan

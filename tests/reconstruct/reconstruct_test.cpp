@@ -7,6 +7,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
+#include "tests/reconstruct/method_names.h"
 #include "tests/reconstruct/shapes.h"
 
 namespace scan {
@@ -70,13 +71,7 @@ TEST_P(EachMethod, GivesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_TRUE(single.surface.triangles == many.surface.triangles);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EachMethod,
-                         testing::Range<std::size_t>(0, reconstruct_method_names().size()),
-                         [](const auto& index) {
-                           std::string name = reconstruct_method_names()[index.param];
-                           std::erase(name, '-');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, EachMethod, test::each_method(), test::method_name);
 
 }  // namespace
 }  // namespace scan

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/synth/laser_bench.h"
+#include "tests/synth/speckle_covariance.h"
 
 namespace scan::synth {
 namespace {
@@ -54,19 +55,6 @@ Moments moments(const std::vector<double>& values) {
 // variance.
 double variance_tolerance(double variance, double n) {
   return 4 * variance * std::sqrt((2 + 6 * variance) / n);
-}
-
-// Simpson's rule for exp(-x^2 / a^2) between two pixels that far apart, Goodman's integral.
-double covariance_of_pixels(double grain_px, double lag_px) {
-  const double a = 2 * grain_px / pi;
-  const int n = 2000;
-  double sum = 0;
-  for (int i = 0; i <= n; ++i) {
-    const double x = -1 + 2.0 * i / n;
-    const double weight = i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2;
-    sum += weight * (1 - std::abs(x)) * std::exp(-(lag_px + x) * (lag_px + x) / (a * a));
-  }
-  return sum * 2 / n / 3;
 }
 
 TEST(SpeckleGrain, IsThatOfTheLens) {

@@ -20,6 +20,17 @@ inline PulsedLidar small_lidar() {
   return lidar;
 }
 
+// Fine steps instead of noise, so that only an effect is seen.
+inline PulsedLidar quiet_lidar() {
+  PulsedLidar lidar;
+  lidar.pattern = RasterPattern{.rows = 10, .columns = 12, .height_rad = 0.2, .width_rad = 0.25};
+  lidar.electrons_at_10m = 20000;
+  lidar.ambient_electrons = 2;
+  lidar.max_range_m = 40;
+  lidar.sensor = {.gain_e_per_dn = 0.25, .offset_dn = 40, .read_noise_e = 4, .bits = 16};
+  return lidar;
+}
+
 inline std::vector<double> waveform(const PulsedLidar& lidar, const Scene& scene,
                                     const Eigen::Vector3d& direction = Eigen::Vector3d::UnitZ()) {
   return expected_waveform(lidar, RayCaster(scene), Pose::Identity(), direction);

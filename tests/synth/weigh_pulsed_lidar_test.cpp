@@ -9,17 +9,6 @@
 namespace scan::synth {
 namespace {
 
-// Fine steps instead of noise, so that only the effect is seen.
-PulsedLidar device() {
-  PulsedLidar lidar;
-  lidar.pattern = RasterPattern{.rows = 10, .columns = 12, .height_rad = 0.2, .width_rad = 0.25};
-  lidar.electrons_at_10m = 20000;
-  lidar.ambient_electrons = 2;
-  lidar.max_range_m = 40;
-  lidar.sensor = {.gain_e_per_dn = 0.25, .offset_dn = 40, .read_noise_e = 4, .bits = 16};
-  return lidar;
-}
-
 Weighed weighed(const PulsedLidar& lidar, const Scene& scene, Effect effect) {
   const RayCaster caster(scene);
   return weigh(lidar, scene, effect, pilot(lidar, caster, Pose::Identity(), 2000));
@@ -28,13 +17,13 @@ Weighed weighed(const PulsedLidar& lidar, const Scene& scene, Effect effect) {
 // Behind a pane stands what is measured.
 TEST(WeighPulsedLidar, LooksThroughClearBodies) {
   Scene scene = scene_of(plane_at(12), 0.5);
-  const auto bare = pilot(device(), RayCaster(scene), Pose::Identity(), 50);
+  const auto bare = pilot(quiet_lidar(), RayCaster(scene), Pose::Identity(), 50);
   scene.materials.push_back({.name = "glass", .bsdf = Dielectric{1.5}});
   scene.objects.push_back({.name = "pane",
                            .world_from_object = make_pose(Eigen::Matrix3d::Identity(), {0, 0, 6}),
                            .geometry = Shape(BoxShape{{9, 9, 0.01}}),
                            .material = 1});
-  const auto behind = pilot(device(), RayCaster(scene), Pose::Identity(), 50);
+  const auto behind = pilot(quiet_lidar(), RayCaster(scene), Pose::Identity(), 50);
   ASSERT_EQ(bare.size(), behind.size());
   for (std::size_t i = 0; i < bare.size(); ++i) {
     EXPECT_EQ(bare[i].range_m, behind[i].range_m);
@@ -45,7 +34,7 @@ TEST(WeighPulsedLidar, LooksThroughClearBodies) {
 }
 
 TEST(WeighPulsedLidar, SaysWhatIsNotThere) {
-  const PulsedLidar lidar = device();
+  const PulsedLidar lidar = quiet_lidar();
   const Scene scene = scene_of(plane_at(12), 0.5);
   for (const Effect effect : all_effects()) {
     const Weighed weight = weighed(lidar, scene, effect);

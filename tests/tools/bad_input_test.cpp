@@ -227,6 +227,14 @@ TEST(BadInput, OutputThatCannotBeWrittenIsFoundBeforeTheWork) {
   expect_failure(run_scan({"reconstruct", points, folder.path().string()}), output,
                  folder.path().string());
   expect_failure(run_scan({"convert", points, "/proc/points.xyz"}), output, "/proc/points.xyz");
+  expect_failure(run_scan({"reconstruct", points, (folder / "s.xyz").string()}), output,
+                 "format '.xyz' is not one of .ply .obj .stl .off");
+  expect_failure(run_scan({"acquire", "stereo", "l.png", "r.png", (folder / "s.stl").string(),
+                           "--calibration", "c.json"}),
+                 output, "format '.stl' is not one of .ply .pcd .xyz .txt .asc");
+  expect_failure(run_scan({"verify", points, "--truth", points, "--picture",
+                           (folder / "no/such/folder.png").string()}),
+                 output, "folder.png");
 }
 
 TEST(Usage, MistypedWordsGetAHint) {
@@ -236,6 +244,12 @@ TEST(Usage, MistypedWordsGetAHint) {
                  "--trim");
   expect_failure(run_scan({"reconstruct", "a.ply", "b.ply", "--depth", "99"}), usage, "99");
   expect_failure(run_scan({"align", "a.ply", "b.ply", "--method", "magic"}), usage, "magic");
+  expect_failure(run_scan({"align", "a.ply", "b.ply", "--method", "symetric"}), usage,
+                 "did you mean 'symmetric'?");
+  expect_failure(run_scan({"align", "a.ply", "b.ply", "--guess-rotation", "2mm"}), usage,
+                 "'2mm' is not an angle, such as 2deg");
+  expect_failure(run_scan({"align", "a.ply", "b.ply", "--guess-rotation", "181deg"}), usage,
+                 "half a turn");
   expect_failure(run_scan({"align", "a.ply", "b.ply", "out", "--global", "--init", "p.txt"}), usage,
                  "--init");
   expect_failure(run_scan({}), usage, "scan --help");

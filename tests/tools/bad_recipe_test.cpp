@@ -72,6 +72,27 @@ INSTANTIATE_TEST_SUITE_P(
              "\"diffuse\": 0.6, \"texture\": { \"picture\": { \"file\": \"" LIBSCAN_SOURCE_DIR
              "/docs/bracket-deviation.png\" } }",
              "a picture without a width"},
+        Slip{"\"depth\": 4 }",
+             "\"depth\": 4 }, \"limits\": [ { \"name\": \"accuracy_rms\", \"at_most_deg\": 1, "
+             "\"reason\": \"\" } ]",
+             "recipe.json/limits/0/at_most_deg: 'accuracy_rms' is a length: at_most_mm or such"},
+        Slip{"\"depth\": 4 }",
+             "\"depth\": 4 }, \"limits\": [ { \"name\": \"accuracy_rms\", \"at_most\": 1, "
+             "\"reason\": \"\" } ]",
+             "at_most: 'accuracy_rms' is a length: at_most_mm or such"},
+        Slip{"\"depth\": 4 }",
+             "\"depth\": 4 }, \"limits\": [ { \"name\": \"rotation_error\", \"at_most_mm\": 1, "
+             "\"reason\": \"\" } ]",
+             "at_most_mm: 'rotation_error' is an angle: at_most_deg or such"},
+        Slip{"\"depth\": 4 }",
+             "\"depth\": 4 }, \"limits\": [ { \"name\": \"genus\", \"equals_mm\": 1, "
+             "\"reason\": \"\" } ]",
+             "equals_mm: 'genus' is without a unit: equals"},
+        Slip{"\"depth\": 4 }",
+             "\"depth\": 4 }, \"limits\": [ { \"name\": \"probing_form\", \"at_most_mm\": 1, "
+             "\"reason\": \"\" } ]",
+             "'probing_form' is a figure of a data sheet (artefact_limits), not of a surface or a "
+             "run"},
         Slip{"\"frequencies_mhz\": [80]", "\"frequencies_mhz\": [0]", "frequencies_hz"},
         Slip{"\"radius_mm\": 400", "\"radius_mm\": 60", "stands inside"},
         Slip{"{ \"sphere\": { \"radius_mm\": 25 } }", "\"brakcet\"", "did you mean 'bracket'"},

@@ -149,6 +149,13 @@ TEST(Calibrate, NamesWhatPicturesShowAndWhatTheyLeaveOpen) {
   EXPECT_EQ(calibrate("stereo", {flat, out}).exit_code, 2);
   EXPECT_EQ(calibrate("camera", {flat, (folder / "camera.txt").string()}).exit_code, 2);
   EXPECT_EQ(calibrate("light-plane", {flat, flat, out}).exit_code, 2);
+  const Outcome metres = calibrate("camera", {flat, out}, {"--board", "9x6", "--square", "20"});
+  EXPECT_NE(metres.err.find("--square: a square of 20 m?"), std::string::npos) << metres.err;
+  const Outcome slip = calibrate("camra", {flat, out});
+  EXPECT_EQ(slip.exit_code, 2);
+  EXPECT_NE(slip.err.find("'camra' is none of camera,stereo,light-plane; did you mean 'camera'?"),
+            std::string::npos)
+      << slip.err;
 }
 
 }  // namespace

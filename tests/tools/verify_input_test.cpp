@@ -72,6 +72,18 @@ TEST(VerifyInput, AnotherUnitIsSuspectedWithItsFactor) {
   EXPECT_TRUE(says(other.outcome, "scale it by 0.001")) << other.outcome.err;
 }
 
+TEST(VerifyInput, InchesAreSuspectedWithTheirFactor) {
+  const Folder folder;
+  const Judged other = judged(folder, cube_off(1 / 0.0254, 0));
+  EXPECT_TRUE(says(other.outcome, "scale it by 0.0254\n")) << other.outcome.err;
+}
+
+TEST(VerifyInput, AMeasuredFileThatIsNotThereIsNamed) {
+  const Outcome outcome = run_scan({"verify", "no-such-run"});
+  EXPECT_EQ(outcome.exit_code, input);
+  EXPECT_TRUE(says(outcome, "no-such-run: no such file or folder")) << outcome.err;
+}
+
 TEST(VerifyInput, AnotherFrameIsSuspectedWithItsGap) {
   const Folder folder;
   const Judged other = judged(folder, cube_off(1, 10));

@@ -14,17 +14,6 @@
 namespace scan::synth {
 namespace {
 
-// Fine steps instead of noise, so that only the effect is seen.
-PulsedLidar device() {
-  PulsedLidar lidar;
-  lidar.pattern = RasterPattern{.rows = 10, .columns = 12, .height_rad = 0.2, .width_rad = 0.25};
-  lidar.electrons_at_10m = 20000;
-  lidar.ambient_electrons = 2;
-  lidar.max_range_m = 40;
-  lidar.sensor = {.gain_e_per_dn = 0.25, .offset_dn = 40, .read_noise_e = 4, .bits = 16};
-  return lidar;
-}
-
 struct Case {
   const char* name;
   Effect effect;
@@ -61,7 +50,7 @@ class LidarBound : public testing::TestWithParam<Case> {};
 // Rounding and the sampled pulse's shape move ranges by 1e-4 m (lidar_range_test.cpp).
 TEST_P(LidarBound, IsMetToATenth) {
   const Case& c = GetParam();
-  PulsedLidar lidar = device();
+  PulsedLidar lidar = quiet_lidar();
   Scene scene;
   c.build(lidar, scene);
   expect_met(c.name, measure(c, lidar, scene), bound_m(lidar, scene, c.effect), 1e-4);
@@ -229,7 +218,7 @@ double spread_m(const PulsedLidar& lidar, const Scene& scene, const EffectSet& e
 }
 
 TEST_P(LidarNoiseBound, IsThreeSigma) {
-  PulsedLidar lidar = device();
+  PulsedLidar lidar = quiet_lidar();
   lidar.electrons_per_w_m2 = 2000;
   Scene scene = scene_of(plane_at(12), 0.1);
   const bool is_light = GetParam() == Effect::scene_lights;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "synth/effects/laser_line_errors.h"
+#include "tests/synth/speckle_covariance.h"
 #include "tests/validation/laser_scans.h"
 
 namespace scan::synth {
@@ -52,19 +53,6 @@ TEST(LaserPeak, AttainsTheCramerRaoBound) {
     EXPECT_GT(ratio, 1 - 4 / std::sqrt(2 * d.count));
     EXPECT_LT(ratio, 1.2);
   }
-}
-
-// Covariance of two pixels' mean factors that far apart, the Gaussian pattern's (Simpson's rule).
-double covariance_of_pixels(double grain_px, double lag_px) {
-  const double a = 2 * grain_px / pi;
-  const int n = 400;
-  double sum = 0;
-  for (int i = 0; i <= n; ++i) {
-    const double x = -1 + 2.0 * i / n;
-    const double weight = i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2;
-    sum += weight * (1 - std::abs(x)) * std::exp(-(lag_px + x) * (lag_px + x) / (a * a));
-  }
-  return sum * 2 / n / 3;
 }
 
 // The decoded stripe's scatter by speckle, rows of a pixel each, against the double sum over pixels

@@ -21,9 +21,16 @@
 namespace scan {
 namespace {
 
-void expect_defined(const std::vector<Measurement>& figures) {
+// Of the unit that the measurement has.
+void expect_defined(const std::vector<Measurement>& figures,
+                    FigureSource source = FigureSource::surface_or_run) {
   EXPECT_FALSE(figures.empty());
-  for (const Measurement& figure : figures) EXPECT_NE(definition(figure.name), "") << figure.name;
+  for (const Measurement& figure : figures) {
+    const auto definition = figure_definition(figure.name);
+    ASSERT_TRUE(definition) << figure.name;
+    EXPECT_EQ(definition->unit, figure.unit) << figure.name;
+    EXPECT_EQ(definition->source, source) << figure.name;
+  }
 }
 
 TEST(Definition, IsThereForEachSurfaceFigure) {
@@ -55,6 +62,9 @@ TEST(Definition, IsThereForEachPoseAndRangeFigure) {
 }
 
 TEST(Definition, IsThereForEachArtefactAndDisparityFigure) {
+  const auto expect_artefact = [](const std::vector<Measurement>& figures) {
+    expect_defined(figures, FigureSource::artefact);
+  };
   Points ball, plate;
   for (int i = 0; i < 6; ++i)
     for (int k = 0; k < 6; ++k) {
@@ -64,24 +74,25 @@ TEST(Definition, IsThereForEachArtefactAndDisparityFigure) {
     }
   Points mantle;
   for (const auto& x : plate) mantle.push_back({std::cos(x.x()), std::sin(x.x()), x.y()});
-  expect_defined(probing_errors(std::vector<Points>{ball}, 2));
-  expect_defined(length_errors(std::vector<PlacedBall>(2, {ball, {0, 0, 0}})));
-  expect_defined(relative_range_errors(std::vector<PlacedPlate>{{plate, {0, 0, 0}}}, {0, 0, 1}));
-  expect_defined({repeatability({.name = "probing_size"}, std::vector<double>{1, 2})});
+  expect_artefact(probing_errors(std::vector<Points>{ball}, 2));
+  expect_artefact(length_errors(std::vector<PlacedBall>(2, {ball, {0, 0, 0}})));
+  expect_artefact(relative_range_errors(std::vector<PlacedPlate>{{plate, {0, 0, 0}}}, {0, 0, 1}));
+  expect_artefact(
+      {repeatability({.name = "probing_size", .unit = "m"}, std::vector<double>{1, 2})});
   EXPECT_NE(definition("merged_probing_form"), definition("probing_form"));
-  expect_defined(spacing_errors(std::vector{BallBar{ball, ball}}, 0));
-  expect_defined(flatness_errors(std::vector<Points>{plate}));
-  expect_defined(step_errors(std::vector{Step{plate, plate}}, 0));
+  expect_artefact(spacing_errors(std::vector{BallBar{ball, ball}}, 0));
+  expect_artefact(flatness_errors(std::vector<Points>{plate}));
+  expect_artefact(step_errors(std::vector{Step{plate, plate}}, 0));
   WavePlate waves{.edge_m = 2.4, .period_m = 0.8, .amplitude_m = 1};
   for (const auto& x : plate)
     for (const double a : {-1.1, 0.1})
       for (const double b : {-1.1, 0.1})
         waves.points.push_back(
             {x.x() + a, x.y() + b, std::cos(2.5 * std::numbers::pi * (x.x() + a))});
-  expect_defined({structural_resolution(std::vector<std::vector<WavePlate>>{{waves}})});
-  expect_defined(cylinder_errors(std::vector{CylinderPlace{mantle, {}}}, 2));
+  expect_artefact({structural_resolution(std::vector<std::vector<WavePlate>>{{waves}})});
+  expect_artefact(cylinder_errors(std::vector{CylinderPlace{mantle, {}}}, 2));
   Image<float> disparity(2, 2, 5.0F);
-  expect_defined(disparity_error(disparity, disparity, 0));
+  expect_defined(disparity_error(disparity, disparity, 0), FigureSource::disparity);
 }
 
 TEST(Definition, OfAnUnknownNameIsEmpty) {

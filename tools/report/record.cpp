@@ -4,6 +4,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
+#include "libscan/io/json_reader.h"
 #include "libscan/io/surface_file.h"
 #include "libscan/io/truth_file.h"
 #include "libscan/verify/surface_error.h"
@@ -18,10 +19,10 @@ using nlohmann::ordered_json;
 
 ordered_json read_part(const fs::path& path) {
   try {
-    return ordered_json::parse(read_file(path));
-  } catch (const ordered_json::exception& error) {
-    throw Error(Trouble::input, path.string() + ": is no JSON: " + error.what(),
-                "the run was cut short; --resume goes on with it");
+    return read_json(path);
+  } catch (const Error& error) {
+    throw Error(error.trouble(), error.what(),
+                "was the run cut short? scan run --resume goes on with it, --force begins anew");
   }
 }
 
