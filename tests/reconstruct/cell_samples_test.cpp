@@ -19,7 +19,9 @@ TEST(CellSamples, OfABlockAreThoseOfItsFirstToItsLastCell) {
   for (std::size_t block = 0; block < counts.size(); ++block) {
     const auto found = of_block(placed, block);
     EXPECT_EQ(found.size(), counts[block]) << block;
-    if (!found.empty()) EXPECT_EQ(found.data(), placed.data() + before) << block;
+    if (!found.empty()) {
+      EXPECT_EQ(found.data(), placed.data() + before) << block;
+    }
     before += counts[block];
   }
 }
@@ -48,8 +50,9 @@ TEST(CellSamples, LieInTheCellsThatAreNamed) {
     const Eigen::Vector3i at(4 * block[0] + slot % 4, 4 * block[1] + slot / 4 % 4,
                              4 * block[2] + slot / 16);
     EXPECT_EQ(at, (16 * u).array().floor().matrix().cast<int>());
-    if (i > 0)
+    if (i > 0) {
       EXPECT_TRUE(std::pair(placed[i - 1].cell, placed[i - 1].sample) < std::pair(cell, sample));
+    }
     ++seen[sample];
   }
   EXPECT_EQ(seen, std::vector<int>(placed.size(), 1));
