@@ -18,9 +18,6 @@ constexpr double patch_share = 1.0 / 12;
 // The scatter, in spacings, from which on normals tell no more than the points.
 constexpr double exact_sigma = 0.02;
 constexpr double least_spacings = 0.4, least_spacings_exact = 0.2;
-// A surface bent by a radius of one spacing, the most that samples can tell, rises by so many
-// spacings between two of them. Less scatter hides none of it.
-constexpr double most_rise = 1.0 / 8;
 // A function that bends within the scatter passes through the samples one by one.
 constexpr double least_sigmas = 1;
 // So much of the solution's energy norm moves the surface by less than scatter, or cells, do.
@@ -41,15 +38,14 @@ constexpr int rounds_of_aim = 2;
 constexpr double trial_residual = 0.01;
 constexpr double least_share_lowered = 0.02;
 
-// One for exact samples, nothing for those that scatter by `most` spacings.
-double exactness(double area, double sigma, double most = exact_sigma) {
-  return std::max(0.0, 1 - sigma * sigma / (most * most * area));
+// One for exact samples, nothing for scattered ones.
+double exactness(double area, double sigma) {
+  return std::max(0.0, 1 - sigma * sigma / (exact_sigma * exact_sigma * area));
 }
 
-// Nearly exact samples are passed through one by one: there a fifth of a spacing is of use.
+// Exact samples also give slopes, so that a fifth of a spacing is of use.
 double least_length(double area, double sigma) {
-  const double spacings =
-      std::lerp(least_spacings, least_spacings_exact, exactness(area, sigma, most_rise));
+  const double spacings = std::lerp(least_spacings, least_spacings_exact, exactness(area, sigma));
   return spacings * std::sqrt(area);
 }
 

@@ -105,20 +105,6 @@ TEST(SsdFit, TrustsAllButSamplesFarOff) {
   EXPECT_EQ(trust(samples, residuals, around, 4e-2)[1], 1);  // within half the length
 }
 
-// Lengths of 0 show the least: a fifth of a spacing without scatter, two fifths from an eighth of a
-// spacing on; in between the square of the scatter counts, so that of a sixteenth is a quarter.
-TEST(SsdFit, PassesThroughSamplesThatHardlyScatter) {
-  constexpr double spacing = 1e-2, area = spacing * spacing;
-  Samples samples;
-  samples.area.assign(4, area);
-  samples.sigma = {0, spacing / 16, spacing / 8, spacing};
-  const std::vector<double> value =
-      smoothing_weights(samples, std::vector<double>(4, 0.0), std::vector<double>(4, 1.0)).value;
-  const std::vector<double> spacings{0.2, 0.25, 0.4, 0.4};
-  for (std::size_t i = 0; i < value.size(); ++i)
-    EXPECT_NEAR(std::cbrt(4 * area / value[i]), spacings[i] * spacing, 1e-12) << i;
-}
-
 // Ten times the scatter, no setting touched: one closed surface of the right genus, and an error
 // well below the scatter. Averaging over 2 pi length^2 of surface leaves sqrt(variance_share) of
 // it.
