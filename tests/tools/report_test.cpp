@@ -205,7 +205,7 @@ TEST(Report, OfBrokenFilesIsOneError) {
   const struct {
     std::string file, content, says;
   } cases[] = {
-      {"verdict.json", "{ \"measurements\": [ {", "verdict.json: is no JSON"},
+      {"verdict.json", "{ \"measurements\": [ {", "verdict.json: not valid JSON near line 1"},
       {"verdict.json", "[]", "verdict.json: is no such file: must hold measurements and pass"},
       {"verdict.json", "{ \"measurements\": [ { \"name\": 3 } ], \"pass\": true }",
        "not what a run writes"},

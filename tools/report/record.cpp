@@ -17,9 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
+// Keys stay in the order of the file; read_json() names the line of what is broken.
 ordered_json read_part(const fs::path& path) {
   try {
-    return read_json(path);
+    read_json(path);
+    return ordered_json::parse(read_file(path), nullptr, true, true);
   } catch (const Error& error) {
     throw Error(error.trouble(), error.what(),
                 "was the run cut short? scan run --resume goes on with it, --force begins anew");
