@@ -106,6 +106,9 @@ void tell_of_work(const SurfaceResult& result, Console& console) {
     console.say("depth " + std::to_string(result.depth) + ", points scatter by " +
                 readable_length(result.sigma_m) + ", smoothing length " +
                 readable_length(result.smoothing_length_m));
+  if (result.moved_points > 0)
+    console.say(std::to_string(result.moved_points) +
+                " points moved to averages that stop at creases, and solved again");
   if (result.parts.parts_per_axis > 1)
     console.say("solved in parts, " + std::to_string(result.parts.parts_per_axis) +
                 " an axis; where two meet their surfaces are " +

@@ -130,7 +130,8 @@ ordered_json surface_json(const SurfaceResult& result) {
           {"invalid_points", result.invalid_points},
           {"outlying_points", result.outlying_points},
           {"estimated_normals", result.estimated_normals},
-          {"turned_normals", result.turned_normals}};
+          {"turned_normals", result.turned_normals},
+          {"moved_points", result.moved_points}};
 }
 
 ordered_json measurement_json(const Measurement& m) {

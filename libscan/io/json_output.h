@@ -37,7 +37,7 @@ nlohmann::ordered_json alignment_json(std::span<const std::string> files,
 // reconstruction.json: `method`, `method_reason`, `depth` (null for methods without), `vertices`,
 // `triangles`, `quads`, `components`, `watertight`, `genus`, `relative_residual`, `iterations`,
 // `unknowns`, `finest_cell_m`, `sigma_m`, `smoothing_length_m`, `stop`, `invalid_points`,
-// `outlying_points`, `estimated_normals`, `turned_normals`.
+// `outlying_points`, `estimated_normals`, `turned_normals`, `moved_points`.
 nlohmann::ordered_json surface_json(const SurfaceResult& result);
 
 // `name`, `value`, `unit`, `definition`, `over`, `count`, `limit`, `relation`, `pass`, `reason`,

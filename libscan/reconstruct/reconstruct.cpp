@@ -18,14 +18,14 @@
 namespace scan {
 namespace {
 
-// With `sharp` the points may move.
+// The points may move with `sharp`, or where all is left to this library.
 SurfaceResult surface_by(ReconstructMethod method, PreparedPoints& points,
                          const ReconstructOptions& options, const Progress& progress) {
   switch (method) {
     case ReconstructMethod::automatic:
       break;  // chosen before
     case ReconstructMethod::ssd:
-      return options.sharp
+      return options.sharp || options.method == ReconstructMethod::automatic
                  ? ssd_up_to_creases(points.cloud, points.spacing_m, options.ssd, progress)
                  : ssd(points.cloud, options.ssd, progress);
     case ReconstructMethod::poisson:

@@ -49,9 +49,10 @@ struct ReconstructOptions {
 };
 
 // Prepares the points (prepare_points.h) and calls the method; `automatic` ("auto") is one that
-// choose_method.h chooses, trimmed if that says so. `viewpoints`: where the scanner of each point
-// stood, or empty. Throws what the method throws, and scan::Error (input) for fewer than
-// 4 finite points or for points at one place or on one line: they span no surface.
+// choose_method.h chooses, trimmed if that says so, and if it is SSD moves points up to creases.
+// `viewpoints`: where the scanner of each point stood, or empty. Throws what the method throws, and
+// scan::Error (input) for fewer than 4 finite points or for points at one place or on one line:
+// they span no surface.
 SurfaceResult reconstruct(const PointCloud& cloud, std::span<const Eigen::Vector3d> viewpoints,
                           const ReconstructOptions& options = {}, const Progress& progress = {});
 

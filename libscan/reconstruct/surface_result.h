@@ -64,6 +64,7 @@ struct SurfaceResult {
   std::size_t outlying_points = 0;    // on no surface, left out
   std::size_t estimated_normals = 0;  // were missing
   std::size_t turned_normals = 0;     // pointed the wrong way
+  std::size_t moved_points = 0;       // to averages that stop at creases (bilateral_samples.h)
   PartsReport parts;
   SharpReport sharp;
   DecimateReport decimation;
