@@ -98,7 +98,6 @@ double stripe_shift_px(const LitPlace& here, const LitPlace& one, const LitPlace
 std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<const LitRay> rays,
                                         std::size_t ray) {
   const LitRay& here = rays[ray];
-  const LitPlace own{0, here.column_px, here.height_e, here.width_px};
   const Walk walk(frames, rays, ray);
   const double least_px = least_widths * here.width_px;
   const StripeShift perhaps_cut{.unknown_px = cut_share * here.width_px};
@@ -114,15 +113,11 @@ std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<co
   if (!one || !other) {
     const double whole_px = one ? one->width_px : other->width_px;
     if (here.width_px < whole_share * whole_px) return std::nullopt;
-    const auto second =
-        one ? walk.next(ahead, 1, 2 * least_px) : walk.next(behind, -1, 2 * least_px);
-    if (!second) return perhaps_cut;
-    const double shift_px = stripe_shift_px(own, one ? *one : *other, *second, here.width_px);
-    if (!std::isfinite(shift_px)) return perhaps_cut;
-    return StripeShift{.unknown_px = std::hypot(perhaps_cut.unknown_px, shift_px)};
+    return perhaps_cut;
   }
   if (here.width_px < whole_share * std::min(one->width_px, other->width_px)) return std::nullopt;
-  const double shift_px = stripe_shift_px(own, *one, *other, here.width_px);
+  const double shift_px =
+      stripe_shift_px({0, here.column_px, here.height_e}, *one, *other, here.width_px);
   if (!std::isfinite(shift_px)) return perhaps_cut;
   return StripeShift{shift_px, 0, true};
 }

@@ -46,13 +46,12 @@ struct StripeShift {
 
 // Of `ray` (of step * rows + row), by places of the same row that are seen at least four widths
 // away. Where the body is not seen that far to one side the stripe may be cut: then 0.15 widths are
-// unknown and the shift by two places on the other side, for a rim's form and brightness move a
-// stripe, too; but none is returned if it has less than 0.8 of the width of the one on the other
-// side, as one that is cut within a width of its centre, or beside it: then its place is the edge's
-// and no longer the plane's. None as well if it has less than 0.8 of the width of either of two,
-// whose mean a stripe that is whole has nearly: a tail on an edge that the plane of light has
-// passed, another body behind. And none where steps a width and more apart see the body on neither
-// side, so that it may be such a tail; where the sweep stands still, or has no other step, 0.15.
+// unknown, but none is returned if it has less than 0.8 of the width of the one on the other side,
+// as one that is cut within a width of its centre, or beside it: then its place is the edge's and
+// no longer the plane's. None as well if it has less than 0.8 of the width of either of two, whose
+// mean a stripe that is whole has nearly: a tail on an edge that the plane of light has passed,
+// another body behind. And none where steps a width and more apart see the body on neither side,
+// so that it may be such a tail; where the sweep stands still, or has no other step, 0.15.
 std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<const LitRay> rays,
                                         std::size_t ray);
 
