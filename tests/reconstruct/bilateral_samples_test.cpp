@@ -115,11 +115,11 @@ TEST(BilateralSamples, AreTheSameForAnyNumberOfThreads) {
 TEST(BilateralSamples, KeepTheSidesOfAThinPlateApart) {
   Case plate = roof(0, 0);
   for (std::size_t i = 0; i < plate.samples.points.size(); ++i) {
-    const double side = i % 2 == 0 ? 1 : -1;
+    const double up = i % 2 == 0 ? 1 : -1;
     Eigen::Vector3d& p = plate.samples.points[i];
-    p[2] = 0.5 + side * spacing / 4;
+    p[2] = 0.5 + up * spacing / 4;
     plate.fit.feet[i] = {p[0], p[1], 0.5};
-    plate.fit.normals[i] = {0, 0, side};
+    plate.fit.normals[i] = {0, 0, up};
   }
   const auto moved = bilateral_samples(plate.samples, plate.fit);
   ASSERT_TRUE(moved);
