@@ -57,9 +57,12 @@ class BilateralFilter {
         order_(curve_order(fit.feet)) {
     const double reach = reach_in_spacings(samples, fit);
     for (const double area : samples.area) reach_.push_back(reach * std::sqrt(area));
-    const std::vector<std::uint32_t> grain_of = grains_of(feet_, normals_, reach_);
-    for (int round = 0; round < rounds_of_normals; ++round) smooth_normals(grain_of);
-    average(grain_of);
+    grain_of_ = grains_of(feet_, normals_, reach_);
+    std::vector<Eigen::Vector3d> centres;
+    for (const Grain& grain : grains()) centres.push_back(grain.foot());
+    tree_.emplace(centres);
+    for (int round = 0; round < rounds_of_normals; ++round) smooth_normals();
+    average();
   }
 
   // Mallows' and Stein's, as in local_smoothing.h.
@@ -81,18 +84,16 @@ class BilateralFilter {
   // Calls body(i, grain, weight) for the grains around each i, and end(i) after the last.
   template <class Body, class End>
   void for_grains(const std::vector<Grain>& grains, Body&& body, End&& end) const {
-    std::vector<Eigen::Vector3d> centres;
-    for (const Grain& grain : grains) centres.push_back(grain.foot());
-    const KdTree tree(centres);
+    std::vector<Eigen::Vector3d> normals;
+    for (const Grain& grain : grains) normals.push_back(grain.normal());
     parallel_chunks(order_.size(), queries_per_task, [&](std::size_t first, std::size_t last) {
       std::vector<Neighbour> near;
       for (std::size_t k = first; k < last; ++k) {
         const std::uint32_t i = order_[k];
-        tree.within(feet_[i], reach_[i], near);
+        tree_->within(feet_[i], reach_[i], near);
         for (const Neighbour& n : near) {
-          const Grain& grain = grains[n.index];
-          const double apart2 = (grain.normal() - normals_[i]).squaredNorm();
-          body(i, grain,
+          const double apart2 = (normals[n.index] - normals_[i]).squaredNorm();
+          body(i, grains[n.index],
                biweight(n.distance2_m2 / (reach_[i] * reach_[i])) *
                    biweight(apart2 / (normal_reach * normal_reach)));
         }
@@ -101,24 +102,24 @@ class BilateralFilter {
     });
   }
 
-  std::vector<Grain> grains(const std::vector<std::uint32_t>& grain_of) const {
-    return summed_grains(grain_of, {samples_.points, feet_, normals_, trust_});
+  std::vector<Grain> grains() const {
+    return summed_grains(grain_of_, {samples_.points, feet_, normals_, trust_});
   }
 
-  void smooth_normals(const std::vector<std::uint32_t>& grain_of) {
+  void smooth_normals() {
     std::vector<Eigen::Vector3d> sums(normals_.size(), Eigen::Vector3d::Zero());
     for_grains(
-        grains(grain_of),
+        grains(),
         [&](std::size_t i, const Grain& g, double weight) { sums[i] += weight * g.normals; },
         [&](std::size_t i) { sums[i] = sums[i].norm() > 0 ? sums[i].normalized() : normals_[i]; });
     normals_ = std::move(sums);
   }
 
-  void average(const std::vector<std::uint32_t>& grain_of) {
+  void average() {
     std::vector<double> sum(normals_.size(), 0.0);
     shift_ = own_share_ = sum;
     for_grains(
-        grains(grain_of),
+        grains(),
         [&](std::size_t i, const Grain& g, double weight) {
           const Eigen::Vector3d& n = normals_[i];
           const Eigen::Vector3d& p = samples_.points[i];
@@ -127,6 +128,7 @@ class BilateralFilter {
           sum[i] += weight * g.trust;
         },
         [&](std::size_t i) {
+          // Its share is told as if it stood in the middle of its grain, a little too large.
           shift_[i] = sum[i] > 0 ? shift_[i] / sum[i] : 0;
           own_share_[i] = sum[i] > 0 ? std::min(1.0, trust_[i] / sum[i]) : 1;
         });
@@ -138,6 +140,8 @@ class BilateralFilter {
   std::vector<Eigen::Vector3d> normals_;
   std::vector<std::uint32_t> order_;
   std::vector<double> reach_;
+  std::vector<std::uint32_t> grain_of_;
+  std::optional<KdTree> tree_;  // of the grains' feet
   std::vector<double> shift_, own_share_;
 };
 
