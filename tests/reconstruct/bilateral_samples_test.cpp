@@ -73,6 +73,18 @@ TEST(BilateralSamples, GoToACreaseThatTheFitRoundsOff) {
   EXPECT_LT(mean_distance(moved->points, 1), 0.5 * mean_distance(c.fit.feet, 1));
 }
 
+// Where the fit smooths over four spacings averages reach over 12.8 and count as 5 pi R^2 / 9 = 286
+// samples: 0.8 x 0.25 / sqrt(286) leaves a mean distance of 0.012 spacings, six spacings 0.025. The
+// fit stands half a spacing below the plane, so that any average is better.
+TEST(BilateralSamples, AverageAsFarAsTheFitSmooths) {
+  Case plane = roof(0, 0);
+  for (Eigen::Vector3d& foot : plane.fit.feet) foot[2] -= spacing / 2;
+  plane.fit.length.assign(plane.fit.length.size(), 4 * spacing);
+  const auto moved = bilateral_samples(plane.samples, plane.fit);
+  ASSERT_TRUE(moved);
+  EXPECT_LT(mean_distance(moved->points, 0), 0.018 * spacing);
+}
+
 // The fit is the plane itself.
 TEST(BilateralSamples, StayWhereThereIsNoiseAlone) {
   Case plane = roof(0, 0);
