@@ -75,14 +75,22 @@ TEST(BilateralSamples, GoToACreaseThatTheFitRoundsOff) {
 
 // Where the fit smooths over four spacings averages reach over 12.8 and count as 5 pi R^2 / 9 = 286
 // samples: 0.8 x 0.25 / sqrt(286) leaves a mean distance of 0.012 spacings, six spacings 0.025. The
-// fit stands half a spacing below the plane, so that any average is better.
+// fit stands half a spacing below the plane, so that any average is better. Of samples farther from
+// the plane's end than that some 30 share no neighbours: chance moves that by a seventh.
 TEST(BilateralSamples, AverageAsFarAsTheFitSmooths) {
   Case plane = roof(0, 0);
   for (Eigen::Vector3d& foot : plane.fit.feet) foot[2] -= spacing / 2;
   plane.fit.length.assign(plane.fit.length.size(), 4 * spacing);
   const auto moved = bilateral_samples(plane.samples, plane.fit);
   ASSERT_TRUE(moved);
-  EXPECT_LT(mean_distance(moved->points, 0), 0.018 * spacing);
+  double sum = 0, count = 0;
+  for (const Eigen::Vector3d& p : moved->points) {
+    if ((p - Eigen::Vector3d(0.5, 0.5, p[2])).cwiseAbs().maxCoeff() > (side / 2 - 13) * spacing)
+      continue;
+    sum += std::abs(p[2] - 0.5);
+    count += 1;
+  }
+  EXPECT_LT(sum / count, 0.018 * spacing);
 }
 
 // The fit is the plane itself.
