@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
+#include "libscan/core/disjoint_sets.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {
@@ -120,12 +120,6 @@ std::size_t samples_of(const PreparedCloud& cloud) {
   return (cloud.size() + stride - 1) / stride;
 }
 
-// Follows the parents to the root, shortening the way.
-std::size_t root_of(std::vector<std::size_t>& parent, std::size_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 }  // namespace
 
 std::vector<Overlap> find_overlaps(std::span<const PreparedCloud> scans,
@@ -165,13 +159,16 @@ std::vector<Overlap> choose_pairs(std::vector<Overlap> overlaps, std::size_t sca
                                   std::size_t most_partners) {
   std::stable_sort(overlaps.begin(), overlaps.end(),
                    [](const Overlap& a, const Overlap& b) { return a.share > b.share; });
-  std::vector<std::size_t> parent(scans), partners(scans, 0);
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  DisjointSets chains(scans);
+  std::vector<std::size_t> partners(scans, 0);
   std::vector<Overlap> chosen;
   for (const Overlap& one : overlaps) {
-    const std::size_t a = root_of(parent, one.source), b = root_of(parent, one.target);
-    if (a == b && std::min(partners[one.source], partners[one.target]) >= most_partners) continue;
-    parent[a] = b;
+    const auto a = static_cast<std::uint32_t>(one.source);
+    const auto b = static_cast<std::uint32_t>(one.target);
+    if (chains.name_of(a) == chains.name_of(b) &&
+        std::min(partners[one.source], partners[one.target]) >= most_partners)
+      continue;
+    chains.unite(a, b);
     ++partners[one.source], ++partners[one.target];
     chosen.push_back(one);
   }

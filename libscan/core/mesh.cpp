@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
+#include "libscan/core/disjoint_sets.h"
 #include "libscan/core/error.h"
 #include "libscan/core/random.h"
 
@@ -16,18 +16,18 @@ namespace {
 // Side k of a triangle runs from its corner k to k + 1; corner k of triangle t is number 3 t + k.
 struct HalfEdge {
   std::uint32_t low, high;
-  std::size_t low_corner, high_corner;
+  std::uint32_t low_corner, high_corner;
   bool forward;  // runs from low to high
 };
 
 std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
   std::vector<HalfEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t next = (k + 1) % 3;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t next = (k + 1) % 3;
       const std::uint32_t a = mesh.triangles[i][k], b = mesh.triangles[i][next];
-      const std::size_t corner_a = 3 * i + k, corner_b = 3 * i + next;
+      const std::uint32_t corner_a = 3 * i + k, corner_b = 3 * i + next;
       edges.push_back({std::min(a, b), std::max(a, b), a < b ? corner_a : corner_b,
                        a < b ? corner_b : corner_a, a < b});
     }
@@ -53,25 +53,6 @@ void count_edges(const std::vector<HalfEdge>& edges, EdgeCensus& census) {
   }
 }
 
-// Disjoint sets with the smallest member as their name.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t name_of(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::size_t i, std::size_t j) {
-    const std::size_t a = name_of(i), b = name_of(j);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 void count_components(const Mesh& mesh, EdgeCensus& census) {
   DisjointSets sets(mesh.vertices.size());
   std::vector<char> used(mesh.vertices.size(), 0);
@@ -80,7 +61,7 @@ void count_components(const Mesh& mesh, EdgeCensus& census) {
       used[v] = 1;
       sets.unite(t[0], v);
     }
-  for (std::size_t i = 0; i < used.size(); ++i) {
+  for (std::uint32_t i = 0; i < used.size(); ++i) {
     census.used_vertices += used[i];
     census.components += used[i] && sets.name_of(i) == i;
   }
@@ -96,7 +77,7 @@ void count_non_manifold_vertices(const Mesh& mesh, const std::vector<HalfEdge>& 
       fans.unite(edges[i].high_corner, edges[i - 1].high_corner);
     }
   std::vector<std::uint32_t> fans_at(mesh.vertices.size(), 0);
-  for (std::size_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner)
+  for (std::uint32_t corner = 0; corner < fans.size(); ++corner)
     if (fans.name_of(corner) == corner) ++fans_at[mesh.triangles[corner / 3][corner % 3]];
   for (const std::uint32_t fans_here : fans_at) census.non_manifold_vertices += fans_here > 1;
 }

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "libscan/core/disjoint_sets.h"
 #include "libscan/core/parallel.h"
 #include "libscan/search/batch.h"
 #include "libscan/search/kd_tree.h"
@@ -14,11 +14,6 @@ namespace scan {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffffu;
-
-std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
 
 }  // namespace
 
@@ -43,17 +38,13 @@ std::vector<double> of_nearest_points(const Mesh& mesh, std::span<const Eigen::V
 }
 
 std::vector<std::uint32_t> triangle_components(const Mesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0u);
+  DisjointSets sets(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles)
-    for (int k = 1; k < 3; ++k) {
-      const std::uint32_t a = find_root(parent, t[0]), b = find_root(parent, t[k]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    for (int k = 1; k < 3; ++k) sets.unite(t[0], t[k]);
   std::vector<std::uint32_t> number(mesh.vertices.size(), none), components;
   std::uint32_t count = 0;
   for (const Triangle& t : mesh.triangles) {
-    std::uint32_t& of_root = number[find_root(parent, t[0])];
+    std::uint32_t& of_root = number[sets.name_of(t[0])];
     if (of_root == none) of_root = count++;
     components.push_back(of_root);
   }

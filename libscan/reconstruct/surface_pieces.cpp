@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "libscan/core/disjoint_sets.h"
 #include "libscan/core/parallel.h"
 
 namespace scan {
@@ -38,17 +38,12 @@ std::vector<std::uint32_t> triangles_across(const Mesh& mesh) {
   return across;
 }
 
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 // Numbered in the order of their first triangles.
-SurfacePieces numbered(std::vector<std::uint32_t> parent) {
+SurfacePieces numbered(DisjointSets sets) {
   SurfacePieces pieces;
-  pieces.of_triangle.resize(parent.size());
-  for (std::uint32_t t = 0; t < parent.size(); ++t) {
-    const std::uint32_t root = root_of(parent, t);  // the lowest of its set
+  pieces.of_triangle.resize(sets.size());
+  for (std::uint32_t t = 0; t < sets.size(); ++t) {
+    const std::uint32_t root = sets.name_of(t);
     pieces.of_triangle[t] = root == t ? pieces.count++ : pieces.of_triangle[root];
   }
   return pieces;
@@ -148,15 +143,12 @@ SurfacePieces pieces_in_cells(const Mesh& mesh, const CellGrid& cells) {
       places[i][a] = static_cast<std::int64_t>(std::floor(sum[a] / (3 * cells.side_m)));
   });
   const std::vector<std::uint32_t> across = triangles_across(mesh);
-  std::vector<std::uint32_t> parent(places.size());
-  std::iota(parent.begin(), parent.end(), 0u);
+  DisjointSets sets(places.size());
   for (std::uint32_t slot = 0; slot < across.size(); ++slot) {
     const std::uint32_t other = across[slot];
-    if (other == none || places[other] != places[slot / 3]) continue;
-    const std::uint32_t a = root_of(parent, slot / 3), b = root_of(parent, other);
-    parent[std::max(a, b)] = std::min(a, b);
+    if (other != none && places[other] == places[slot / 3]) sets.unite(slot / 3, other);
   }
-  return numbered(std::move(parent));
+  return numbered(std::move(sets));
 }
 
 PiecePolygons polygons_between(const Mesh& mesh, SurfacePieces& pieces) {
