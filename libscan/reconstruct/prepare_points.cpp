@@ -39,7 +39,7 @@ void leave_out_invalid(PreparedPoints& prepared) {
 LocalPlanes leave_out_outliers(PreparedPoints& prepared) {
   LocalPlanes planes = local_planes(prepared.cloud.points, neighbours);
   for (int round = 0; round < most_rounds; ++round) {
-    const std::vector<char> out = outlying(planes);
+    const std::vector<char> out = outlying(planes, prepared.cloud.points);
     std::vector<std::uint32_t> kept;
     for (std::uint32_t i = 0; i < out.size(); ++i)
       if (!out[i]) kept.push_back(i);

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <numbers>
 
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
@@ -59,6 +61,59 @@ TEST(PreparePoints, KeepsAThinlySampledSide) {
     if (random.uniform() < std::pow(200.0, -(all.points[i][0] + 1) / 2)) kept.push_back(i);
   const PreparedPoints prepared = prepare_points(subset(all, kept), {});
   EXPECT_LE(prepared.outlying_points, kept.size() / 100);
+}
+
+// A tube 2.25 spacings in radius beside a sphere sampled four times as finely. The 16 nearest reach
+// 2.26 spacings, once round by 1 rad each way: no plane, but all turned by less than 60 degrees. So
+// all agree; planes through so few may be off by enough for 1 %.
+TEST(PreparePoints, KeepsAThinlySampledTube) {
+  constexpr double spacing_m = 1.0 / 30, radius_m = 2.25 * spacing_m;
+  const double area_m2 = 4 * std::numbers::pi * std::numbers::pi * radius_m;
+  const auto of_tube = static_cast<std::size_t>(area_m2 / (spacing_m * spacing_m));
+  PointCloud cloud{.points = torus_cloud(of_tube, 1, radius_m).points};
+  for (const auto& x : sphere_cloud(45000, 0.5).points) cloud.points.push_back(x);
+  const std::vector<Eigen::Vector3d> left = prepare_points(cloud, {}).cloud.points;
+  const auto kept = std::count_if(left.begin(), left.end(),
+                                  [](const Eigen::Vector3d& x) { return x.norm() > 0.7; });
+  EXPECT_GE(kept, 0.99 * static_cast<double>(of_tube));
+}
+
+// A tube of six of the sphere's spacings in radius on its pole, whose rings grow apart from one
+// spacing to 2.7: fewer than 1 % of the points lie thinly, but one step leads to the next.
+TEST(PreparePoints, KeepsAThinBendThatHangsTogetherWithTheBody) {
+  PointCloud cloud{.points = sphere_cloud(40000, 0.5).points};
+  const double least_m = std::sqrt(std::numbers::pi / 40000), radius_m = 6 * least_m;
+  double z = 0.5, step_m = least_m;
+  std::size_t thin = 0;
+  for (int ring = 0; z < 0.5 + 60 * least_m; ++ring, z += step_m) {
+    step_m = std::min(2.7 * least_m, 1.08 * step_m);
+    const double count = std::round(2 * std::numbers::pi * radius_m / step_m);
+    for (int k = 0; k < count; ++k) {
+      const double angle = 2 * std::numbers::pi * (k + 0.5 * (ring % 2)) / count;
+      cloud.points.push_back({radius_m * std::cos(angle), radius_m * std::sin(angle), z});
+      thin += step_m > 2.2 * least_m;
+    }
+  }
+  ASSERT_LT(thin, cloud.size() / 100);
+  ASSERT_GT(thin, 100u);
+  // Of the last ring the neighbours lie all on one side: they may reach too far for points alone.
+  EXPECT_LE(prepare_points(cloud, {}).outlying_points, 20u);
+}
+
+// Points enough for all to be neighbours, on a sheet that touches nothing: 0.2 % of all.
+TEST(PreparePoints, LeavesOutAnIsland) {
+  for (const double bend : {0.0, 2.0}) {
+    PointCloud cloud{.points = sphere_cloud(20000, 0.5).points};
+    for (int i = 0; i < 40; ++i) {
+      const double u = 0.06 * (i % 8) - 0.21, v = 0.06 * (i / 8) - 0.12;
+      cloud.points.push_back({u, v, 1.5 + bend * (u * u + v * v)});
+    }
+    const std::vector<Eigen::Vector3d> left = prepare_points(cloud, {}).cloud.points;
+    EXPECT_EQ(
+        std::count_if(left.begin(), left.end(), [](const Eigen::Vector3d& x) { return x[2] > 1; }),
+        0)
+        << bend;
+  }
 }
 
 TEST(PreparePoints, EstimatesMissingNormals) {
