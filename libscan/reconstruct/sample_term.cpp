@@ -169,6 +169,13 @@ void SampleTerm<Real>::aim_at_scattered_mean(const BlockLevel& level, const std:
 }
 
 template <class Real>
+void SampleTerm<Real>::aim_at(std::span<const double> targets, std::size_t first) {
+  for (Placed& sample : placed_)
+    if (sample.sample >= first)
+      sample.value_target = static_cast<Real>(targets[sample.sample - first]);
+}
+
+template <class Real>
 double SampleTerm<Real>::energy(const BlockLevel& level, const std::vector<Real>& u) const {
   double total = 0;
   Real cube[cube_room];

@@ -43,6 +43,8 @@ class SampleTerm {
   // Aims at f = sigma^2 / 2 times the Laplacian of u at each sample.
   void aim_at_scattered_mean(const BlockLevel& level, const std::vector<Real>& u,
                              std::span<const double> sigma);
+  // Aims at f = targets[k] at sample `first` + k.
+  void aim_at(std::span<const double> targets, std::size_t first);
   // The term's own value for u.
   double energy(const BlockLevel& level, const std::vector<Real>& u) const;
 

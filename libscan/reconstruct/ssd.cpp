@@ -122,16 +122,42 @@ std::optional<Samples> solve_up_to_creases(const SsdProblem& problem, const SsdF
   return moved;
 }
 
+SurfaceResult surface_of(const Solved& all, const Samples& samples, const SsdOptions& options) {
+  const int depth = surface_depth(all.grid.finest_depth(), options);
+  return world_result(zero_level_set({all.grid, all.fit.solution.coefficients}, depth), samples,
+                      all.fit.length);
+}
+
+// Unsupported surface far from all data may be a bubble that nothing asks for: where f has the
+// wrong sign there, it is drawn to the right one.
+void draw_to_right_sides(Solved& all, const Samples& fitted, const Samples& samples,
+                         const SsdFitOptions& fit_options, const SsdOptions& options,
+                         SurfaceResult& result) {
+  constexpr int most_rounds = 3;
+  FarPlaces far;
+  for (int round = 0; round < most_rounds; ++round) {
+    const auto farthest = std::max_element(result.support_m.begin(), result.support_m.end());
+    if (farthest == result.support_m.end() || *farthest <= far_distance * samples.box.side_m)
+      return;
+    const FarPlaces more = misjudged_places({all.grid, all.fit.solution.coefficients}, fitted);
+    if (more.places.empty()) return;
+    far.places.insert(far.places.end(), more.places.begin(), more.places.end());
+    far.distances.insert(far.distances.end(), more.distances.begin(), more.distances.end());
+    fit_again(all.grid, fitted, far, fit_options, all.fit);
+    result = surface_of(all, samples, options);
+  }
+}
+
 SurfaceResult at_once(const SsdProblem& problem, const SsdFitOptions& fit_options,
                       const SsdOptions& options, std::optional<Samples>* moved,
                       const Progress& progress) {
   Solved all = solved(problem, fit_options, progress);
   if (moved) *moved = solve_up_to_creases(problem, fit_options, all, progress);
-  const auto& [grid, fit] = all;
   if (progress) progress("surface", 0);
-  const int depth = surface_depth(grid.finest_depth(), options);
-  SurfaceResult result = world_result(zero_level_set({grid, fit.solution.coefficients}, depth),
-                                      problem.samples, fit.length);
+  SurfaceResult result = surface_of(all, problem.samples, options);
+  draw_to_right_sides(all, moved && *moved ? **moved : problem.samples, problem.samples,
+                      fit_options, options, result);
+  const auto& [grid, fit] = all;
   result.depth = grid.finest_depth();
   result.smoothing_length_m = median(fit.length);
   result.unknowns = active_functions(grid);

@@ -21,9 +21,11 @@ void check(const SsdOptions& options);
 
 // The zero level set of f as a closed, oriented, manifold mesh over oriented points (unit normals,
 // outward). Where the points leave a surface open it goes on to the walls of the box and along
-// them: `support_m` tells how far from data, and trim() cuts it. Components next to less than 0.1 %
-// of the data are dropped. Facets are one level finer than the solution if the depth allows it. The
-// result depends neither on the order of the points nor on the number of threads.
+// them: `support_m` tells how far from data, and trim() cuts it. Where they leave open less than a
+// third, no surface goes far on the wrong side of it (far_places.h; not in parts). Components next
+// to less than 0.1 % of the data are dropped. Facets are one level finer than the solution if the
+// depth allows it. The result depends neither on the order of the points nor on the number of
+// threads.
 //
 // Points that are not finite or have no normal are left out and counted, so are those far from all
 // others. Throws scan::Error: usage for options outside their limits, input for fewer than 16 valid

@@ -181,6 +181,42 @@ SsdFit fitted(const OctreeGrid& grid, const Samples& samples, const SsdFitOption
   return fit.take();
 }
 
+// `far` as samples of no scatter and of no direction; their areas are those of their cells' sides.
+Samples with_far_places(Samples samples, const FarPlaces& far) {
+  for (const Eigen::Vector3d& place : far.places) {
+    samples.points.push_back(place);
+    samples.normals.push_back(Eigen::Vector3d::Zero());
+    samples.area.push_back(far_distance * far_distance);
+    samples.sigma.push_back(0);
+  }
+  return samples;
+}
+
+template <class Real>
+void solve_again(const OctreeGrid& grid, const Samples& samples, const FarPlaces& far,
+                 const SsdFitOptions& options, SsdFit& fit) {
+  SampleWeights weights = smoothing_weights(samples, fit.length, fit.trust);
+  for (const double distance : far.distances) {
+    weights.value.push_back(4 * far_distance * far_distance / std::pow(std::abs(distance), 3));
+    weights.gradient.push_back(0);
+  }
+  const Samples all = with_far_places(samples, far);
+  SsdSystem<Real> system(grid, all, weights);
+  SsdSolver<Real> solver(system, grid);
+  solver.refresh();
+  SsdSolution& solution = fit.solution;
+  if (samples.scattered_all_around && !is_exact(samples))
+    system.aim_at_scattered_mean(solution.coefficients);
+  system.aim_at(far.distances, samples.points.size());
+  solution.iterations +=
+      solver.improve(options.relative_residual, options.max_iterations - solution.iterations,
+                     solution.coefficients);
+  solution.relative_residual = solver.relative_residual(solution.coefficients);
+  solution.stop = solution.relative_residual <= 1.01 * options.relative_residual
+                      ? SolveStop::converged
+                      : SolveStop::iteration_limit;
+}
+
 }  // namespace
 
 SampleWeights smoothing_weights(const Samples& samples, const std::vector<double>& length,
@@ -225,6 +261,15 @@ SsdFit fit_surface(const OctreeGrid& grid, const Samples& samples, const SsdFitO
   return chosen.relative_residual < least_residual_in_floats
              ? fitted<double>(grid, samples, chosen, progress)
              : fitted<float>(grid, samples, chosen, progress);
+}
+
+void fit_again(const OctreeGrid& grid, const Samples& samples, const FarPlaces& far,
+               const SsdFitOptions& options, SsdFit& fit) {
+  const SsdFitOptions chosen = chosen_for(samples, options);
+  if (chosen.relative_residual < least_residual_in_floats)
+    solve_again<double>(grid, samples, far, chosen, fit);
+  else
+    solve_again<float>(grid, samples, far, chosen, fit);
 }
 
 }  // namespace scan

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "libscan/core/progress.h"
+#include "libscan/reconstruct/far_places.h"
 #include "libscan/reconstruct/ssd_solver.h"
 
 namespace scan {
@@ -43,5 +44,10 @@ SsdFitOptions chosen_for(const Samples& samples, SsdFitOptions options);
 // alone goes on. Then all is solved once more for the lengths found.
 SsdFit fit_surface(const OctreeGrid& grid, const Samples& samples, const SsdFitOptions& options,
                    const Progress& progress = {});
+
+// Once more from there, with the same lengths and trust, and f drawn to the distances of `far` as
+// if it had samples there whose smoothing length is their distance from all others.
+void fit_again(const OctreeGrid& grid, const Samples& samples, const FarPlaces& far,
+               const SsdFitOptions& options, SsdFit& fit);
 
 }  // namespace scan

@@ -182,6 +182,11 @@ void SsdSystem<Real>::aim_at_scattered_mean(const LevelArrays& x) {
 }
 
 template <class Real>
+void SsdSystem<Real>::aim_at(std::span<const double> targets, std::size_t first) {
+  for (std::size_t l = 0; l <= finest_; ++l) terms_[l].aim_at(targets, first);
+}
+
+template <class Real>
 double SsdSystem<Real>::energy(const Arrays& x) {
   Arrays product = active_arrays<Real>(grid_);
   multiply(x, product, false);  // leaves the sums behind

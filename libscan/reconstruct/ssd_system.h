@@ -47,6 +47,8 @@ class SsdSystem {
   // From now on aims at f = sigma^2 / 2 times the Laplacian of x at each sample, not at f = 0: that
   // is what samples of the surface, scattered by sigma in all directions, find there on average.
   void aim_at_scattered_mean(const LevelArrays& x);
+  // From now on aims at f = targets[k] at sample `first` + k.
+  void aim_at(std::span<const double> targets, std::size_t first);
   double energy(const Arrays& x);
 
  private:
