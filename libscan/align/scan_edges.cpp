@@ -184,6 +184,14 @@ double guess_sigma_m(const PreparedScans& scans, std::span<const ScanEdge> edges
   return median(std::move(offs_m));
 }
 
+double open_sigma_m(const PreparedScans& scans, std::span<const ScanEdge> edges) {
+  const bool any_open = std::any_of(edges.begin(), edges.end(), [&](const ScanEdge& edge) {
+    const auto open = motions_of(edge, size_m(scans, edge)).open;
+    return edge.accepted && std::find(open.begin(), open.end(), true) != open.end();
+  });
+  return any_open ? guess_sigma_m(scans, edges) : 0;
+}
+
 PoseEdge graph_edge(const PreparedScans& scans, const ScanEdge& edge, double guess_sigma_m) {
   const PreparedCloud& source = scans.clouds[edge.source];
   const PreparedCloud& target = scans.clouds[edge.target];
