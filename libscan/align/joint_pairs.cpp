@@ -31,7 +31,8 @@ double last_scale_m(double median_m, const PreparedCloud& target) {
 
 // Of the couple's form, on the way to the last one.
 double scale_m(const JointCouple& couple, double last_m) {
-  if (couple.scale_m == unlimited_m) return first_scale / last_scale * last_m;
+  if (couple.scale_m == unlimited_m)
+    return std::max(first_scale / last_scale * last_m, couple.first_m);
   return std::min(std::max(last_m, narrowing * couple.scale_m), couple.scale_m);
 }
 

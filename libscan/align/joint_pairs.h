@@ -19,6 +19,7 @@ struct JointCouple {
   std::size_t source = 0, target = 0;
   std::size_t stride = 1, first = 0;
   double scale_m = unlimited_m;  // of the loss in the last round
+  double first_m = 0;            // least of the first round's
 };
 
 // What the pairs in one place pull the pose with.
@@ -59,10 +60,11 @@ std::vector<JointCouple> joint_couples(
     std::size_t most_partners);
 
 // The form of a couple; none if fewer than options.min_overlap of the asked points count. The scale
-// is that of the residuals, never wider than the couple's last one and never narrower than 0.7 of
-// it: what a narrower one leaves out may be what was to pull. Points of `target_rim` (rims.h) are
-// no partners: beyond a scan's end the nearest of them are those that noise along diverging rays
-// has carried outwards, which are the far ones. That bends scan after scan the same way.
+// is that of the residuals, at first no narrower than `first_m`, then never wider than the couple's
+// last one and never narrower than 0.7 of it: what a narrower one leaves out may be what was to
+// pull. Points of `target_rim` (rims.h) are no partners: beyond a scan's end the nearest are those
+// that noise along diverging rays has carried outwards, which are the far ones. That bends scan
+// after scan the same way.
 JointForm joint_form(const JointCouple& couple, const PreparedCloud& source,
                      const PreparedCloud& target, const Pose& world_from_source,
                      const Pose& world_from_target, const IcpOptions& options, double patch_m = 0,

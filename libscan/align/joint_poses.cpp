@@ -25,8 +25,9 @@ constexpr double reach_in_spacings = 3;
 // Steps below half a standard error change nothing that can be known.
 constexpr double negligible_square = 0.25;
 // The loss narrows anew from where the scans came to stand together: what a first narrowing left
-// out at the pairs' poses may be what holds a scan that few motions of its own are told of.
-constexpr int narrowings = 2;
+// out at the pairs' poses may be what holds a scan that few motions of its own are told of. One
+// that begins as wide as the starts are off leaves nothing out.
+constexpr int usual_narrowings = 2;
 // Places of the surface at which pulls are added up before their scatter: so many to a scan, enough
 // for shared_noise.h to tell from their own what neighbours share.
 constexpr double places = 2048;
@@ -35,7 +36,7 @@ class Refinement {
  public:
   Refinement(const PreparedScans& scans, std::span<const Pose> poses, std::span<const Pose> guesses,
              const std::vector<bool>& tied, std::size_t anchor, const MultiviewOptions& options);
-  void run(const Progress& progress);
+  void run(double off_m, const Progress& progress);
   JointPoses result();
 
  private:
@@ -187,9 +188,14 @@ void Refinement::settle(int most_rounds, const Progress& progress) {
   }
 }
 
-void Refinement::run(const Progress& progress) {
+// Welsch's loss pulls the most at its scale: with the first one as wide as the starts are off, the
+// few points that hold a slide do so too, and partners count up to three standard deviations off
+// (pairs.cpp). From a narrow one these lie beyond it, and the slide comes to rest wherever some
+// stray points agree.
+void Refinement::run(double off_m, const Progress& progress) {
+  const int narrowings = off_m > 0 ? 1 : usual_narrowings;
   for (int narrowing = 1; narrowing <= narrowings; ++narrowing) {
-    for (JointCouple& couple : couples_) couple.scale_m = unlimited_m;
+    for (JointCouple& couple : couples_) couple.scale_m = unlimited_m, couple.first_m = off_m;
     settle(options_.max_rounds * narrowing / narrowings, progress);
   }
   std::vector<JointDetail> details;
@@ -236,10 +242,10 @@ JointPoses Refinement::result() {
 
 JointPoses refine_jointly(const PreparedScans& scans, std::span<const Pose> world_from_local,
                           std::span<const Pose> guesses, const std::vector<bool>& tied,
-                          std::size_t anchor, const MultiviewOptions& options,
+                          std::size_t anchor, double off_m, const MultiviewOptions& options,
                           const Progress& progress) {
   Refinement refinement(scans, world_from_local, guesses, tied, anchor, options);
-  refinement.run(progress);
+  refinement.run(off_m, progress);
   return refinement.result();
 }
 

@@ -32,11 +32,12 @@ struct JointPoses {
   int rounds = 0;
 };
 
-// From poses near the answer; scans that are not tied and the anchor stay. Weak motions come to
-// stand as in the guesses. options.on_round gets world_from_local.
+// From poses near the answer, which may be off by `off_m` (standard deviation) along what the pairs
+// left open; scans that are not tied and the anchor stay. Weak motions come to stand as in the
+// guesses. options.on_round gets world_from_local.
 JointPoses refine_jointly(const PreparedScans& scans, std::span<const Pose> world_from_local,
                           std::span<const Pose> guesses, const std::vector<bool>& tied,
-                          std::size_t anchor, const MultiviewOptions& options,
+                          std::size_t anchor, double off_m, const MultiviewOptions& options,
                           const Progress& progress);
 
 }  // namespace scan

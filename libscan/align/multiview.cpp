@@ -207,7 +207,8 @@ void Alignment::refine() {
     options_.on_round(world_poses(poses_));
     options.on_round = [&](std::span<const Pose> local) { options_.on_round(world_poses(local)); };
   }
-  JointPoses joint = refine_jointly(scans_, poses_, guesses_, tied_, anchor_, options, progress_);
+  JointPoses joint = refine_jointly(scans_, poses_, guesses_, tied_, anchor_,
+                                    open_sigma_m(scans_, result_.edges), options, progress_);
   poses_ = joint.world_from_local;
   result_.rounds = joint.rounds;
   result_.pairs_used = joint.overlapping.size();

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 #include <optional>
 
 #include "libscan/align/agreement.h"
@@ -182,6 +183,24 @@ double guess_sigma_m(const PreparedScans& scans, std::span<const ScanEdge> edges
     if (has_answer(edge))
       if (const auto off_m = off_guess_m(edge, size_m(scans, edge))) offs_m.push_back(*off_m);
   return median(std::move(offs_m));
+}
+
+double open_sigma_m(const PreparedScans& scans, std::span<const ScanEdge> edges) {
+  std::vector<std::size_t> group(scans.clouds.size());
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  const auto group_of = [&](std::size_t scan) {
+    while (group[scan] != scan) scan = group[scan] = group[group[scan]];
+    return scan;
+  };
+  for (const ScanEdge& edge : edges) {
+    const auto open = motions_of(edge, size_m(scans, edge)).open;
+    if (edge.accepted && std::find(open.begin(), open.end(), true) == open.end())
+      group[group_of(edge.source)] = group_of(edge.target);
+  }
+  const bool settled = std::all_of(edges.begin(), edges.end(), [&](const ScanEdge& edge) {
+    return !edge.accepted || group_of(edge.source) == group_of(edge.target);
+  });
+  return settled ? 0 : guess_sigma_m(scans, edges);
 }
 
 PoseEdge graph_edge(const PreparedScans& scans, const ScanEdge& edge, double guess_sigma_m) {

@@ -36,6 +36,11 @@ SolvedPoses solve_edges(const PreparedScans& scans, std::span<const Pose> starts
 // theirs along the motions that they fix; 0 if none fixes any.
 double guess_sigma_m(const PreparedScans& scans, std::span<const ScanEdge> edges);
 
+// How far off the solved poses may be, standard deviation: as far as the guesses, unless accepted
+// pairs that leave no motion open tie together all scans that any accepted one ties; then 0, since
+// these pairs have settled all.
+double open_sigma_m(const PreparedScans& scans, std::span<const ScanEdge> edges);
+
 // The information of an edge for the graph, about the target's prepared origin: that of the icp,
 // less what a smooth distortion by the device may add. Of such a distortion a rigid motion absorbs
 // about as much as it leaves in the residuals: sigma is their rms for the shift, and for the turn

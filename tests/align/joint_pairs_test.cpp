@@ -168,6 +168,21 @@ TEST(JointForm, ItsScaleFollowsTheResidualsButNeverWidensOrJumps) {
     EXPECT_FALSE(form_after(near_m).narrowing) << near_m;
 }
 
+// The first one alone is as wide as it must be at least.
+TEST(JointForm, ItsFirstScaleIsAsWideAsAsked) {
+  const Setting s = setting(5);
+  const auto scale_m = [&](double last_m, double first_m) {
+    const JointCouple couple{.source = 0, .target = 1, .scale_m = last_m, .first_m = first_m};
+    return joint_form(couple, s.source, s.target, s.world_from_source, s.world_from_target,
+                      s.options)
+        .scale_m;
+  };
+  const double usual_m = scale_m(unlimited_m, 0);
+  EXPECT_EQ(scale_m(unlimited_m, 0.9 * usual_m), usual_m);
+  EXPECT_EQ(scale_m(unlimited_m, 20 * usual_m), 20 * usual_m);
+  EXPECT_DOUBLE_EQ(scale_m(10 * usual_m, 20 * usual_m), 7 * usual_m);
+}
+
 TEST(JointForm, TooSmallAnOverlapIsNone) {
   Setting s = setting(6);
   const JointCouple couple{.source = 0, .target = 1};

@@ -100,5 +100,33 @@ TEST(GuessSigma, IsTheMedianAlongWhatPairsFix) {
   EXPECT_EQ(guess_sigma_m(scans, std::span(edges).last(1)), 0);
 }
 
+// Pairs off their guesses along what they fix, of which the second one comes to leave a slide
+// open.
+TEST(OpenSigma, IsThatOfTheGuessesWhereAnAcceptedPairAloneLeavesAMotionOpen) {
+  PreparedScans scans = two_scans();
+  scans.clouds.resize(3);
+  scans.clouds[2].radius_m = size_m;
+  std::vector<ScanEdge> edges;
+  for (const double along_m : {1e-3, 3e-3}) {
+    ScanEdge edge{
+        .source = 2 * edges.size(), .target = 1, .stop = Stop::converged, .accepted = true};
+    edge.centre = scans.clouds[1].origin + arm;
+    edge.target_from_source = Eigen::Translation3d(along_m, along_m, along_m) * Pose::Identity();
+    edge.information = 1e6 * Matrix6::Identity();
+    edges.push_back(edge);
+  }
+  EXPECT_EQ(open_sigma_m(scans, edges), 0);
+  edges[1].information(3, 3) = 0;
+  EXPECT_EQ(open_sigma_m(scans, edges), guess_sigma_m(scans, edges));
+  EXPECT_GT(guess_sigma_m(scans, edges), 0);
+  edges.push_back(edges[0]);  // a way around it, from 0 to 2
+  edges[2].target = 2;
+  EXPECT_EQ(open_sigma_m(scans, edges), 0);
+  edges[2].accepted = false;
+  EXPECT_GT(open_sigma_m(scans, edges), 0);
+  edges[1].accepted = false;
+  EXPECT_EQ(open_sigma_m(scans, edges), 0);
+}
+
 }  // namespace
 }  // namespace scan
