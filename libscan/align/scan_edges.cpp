@@ -8,10 +8,10 @@
 #include <array>
 #include <cmath>
 #include <mutex>
-#include <numeric>
 #include <optional>
 
 #include "libscan/align/agreement.h"
+#include "libscan/core/disjoint_sets.h"
 #include "libscan/core/median.h"
 #include "libscan/core/parallel.h"
 
@@ -186,19 +186,17 @@ double guess_sigma_m(const PreparedScans& scans, std::span<const ScanEdge> edges
 }
 
 double open_sigma_m(const PreparedScans& scans, std::span<const ScanEdge> edges) {
-  std::vector<std::size_t> group(scans.clouds.size());
-  std::iota(group.begin(), group.end(), std::size_t{0});
-  const auto group_of = [&](std::size_t scan) {
-    while (group[scan] != scan) scan = group[scan] = group[group[scan]];
-    return scan;
+  DisjointSets tied(scans.clouds.size());
+  const auto set_of = [&](std::size_t scan) {
+    return tied.name_of(static_cast<std::uint32_t>(scan));
   };
   for (const ScanEdge& edge : edges) {
     const auto open = motions_of(edge, size_m(scans, edge)).open;
     if (edge.accepted && std::find(open.begin(), open.end(), true) == open.end())
-      group[group_of(edge.source)] = group_of(edge.target);
+      tied.unite(set_of(edge.source), set_of(edge.target));
   }
   const bool settled = std::all_of(edges.begin(), edges.end(), [&](const ScanEdge& edge) {
-    return !edge.accepted || group_of(edge.source) == group_of(edge.target);
+    return !edge.accepted || set_of(edge.source) == set_of(edge.target);
   });
   return settled ? 0 : guess_sigma_m(scans, edges);
 }
