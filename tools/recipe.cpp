@@ -94,8 +94,7 @@ std::optional<double> read_bound(JsonReader& reader, const std::string& word,
 Limit read_limit(JsonReader reader, FigureSource source) {
   Limit limit{
       .name = read_figure(reader, "name", source), .relation = "", .value = 0, .reason = ""};
-  for (const auto& [word, relation] :
-       {std::pair("at_most", "<="), std::pair("at_least", ">="), std::pair("equals", "==")}) {
+  for (const auto& [word, relation] : limit_words) {
     const auto bound = read_bound(reader, word, limit.name);
     if (!bound) continue;
     if (!limit.relation.empty()) reader.fail(word, "is a second limit; one limit an entry");
@@ -103,7 +102,7 @@ Limit read_limit(JsonReader reader, FigureSource source) {
     limit.value = *bound;
   }
   if (limit.relation.empty())
-    reader.fail("name", "has no at_most, at_least or equals (with the unit: at_most_mm)");
+    reader.fail("name", "has no at_most, at_least, equals or within (with the unit: at_most_mm)");
   limit.reason = reader.text("reason");
   reader.finish();
   return limit;
@@ -118,10 +117,10 @@ std::vector<Limit> read_limits(JsonReader& reader, const char* key, FigureSource
 }
 
 ordered_json to_json(const Limit& limit, const std::string& unit) {
-  const std::string word = limit.relation == "<="   ? "at_most"
-                           : limit.relation == ">=" ? "at_least"
-                                                    : "equals";
-  return {{"name", limit.name}, {word + unit, limit.value}, {"reason", limit.reason}};
+  std::string key;
+  for (const auto& [word, relation] : limit_words)
+    if (limit.relation == relation) key = word + unit;
+  return {{"name", limit.name}, {key, limit.value}, {"reason", limit.reason}};
 }
 
 ordered_json to_json(const std::vector<Limit>& limits) {

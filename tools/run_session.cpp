@@ -11,9 +11,11 @@
 #include "libscan/core/parallel.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
+#include "tools/left_out.h"
 #include "tools/report_stage.h"
 #include "tools/run_files.h"
 #include "tools/run_stages.h"
+#include "tools/verdict_text.h"
 #include "tools/version.h"
 
 namespace scan {
@@ -171,7 +173,8 @@ int RunSession::finish(const std::string& command, const ordered_json& more, boo
     result["rays_per_second"] = rays_of(result["scans"]) / seconds;
   for (const auto& [key, value] : more.items()) result[key] = value;
   if (fs::exists(run_ / "verdict.json")) {
-    const ordered_json verdict = read_or_empty(run_ / "verdict.json");
+    ordered_json verdict = read_or_empty(run_ / "verdict.json");
+    tell_left_out(run_, verdict, console_);
     for (const auto& [key, value] : verdict.items()) result[key] = value;
     pass = pass && verdict.value("pass", false);
     say_verdict(verdict, console_);

@@ -17,8 +17,10 @@
 #include "tools/artefact_stage.h"
 #include "tools/commands.h"
 #include "tools/inputs.h"
+#include "tools/left_out.h"
 #include "tools/report/picture.h"
 #include "tools/run_stages.h"
+#include "tools/verdict_text.h"
 #include "tools/verify_stage.h"
 
 namespace scan {
@@ -181,8 +183,9 @@ int verify(const Arguments& arguments, Console& console) {
   if (!arguments.picture.empty()) check_output(arguments.picture);
   if (arguments.artefacts) return verify_artefacts(arguments, console);
   const Stopwatch watch;
+  const bool is_run = std::filesystem::is_directory(arguments.measured);
   Verdict verdict;
-  if (std::filesystem::is_directory(arguments.measured)) {
+  if (is_run) {
     verdict = verify_run(arguments.measured, console);
   } else {
     if (!std::filesystem::exists(arguments.measured))
@@ -198,7 +201,8 @@ int verify(const Arguments& arguments, Console& console) {
     verdict = judge(measure_files(arguments, console), limits);
   }
   console.time("verify", watch.seconds());
-  const auto json = verdict_json(verdict);
+  ordered_json json = verdict_json(verdict);
+  if (is_run) tell_left_out(arguments.measured, json, console);
   say_verdict(json, console);
   console.finish("verify", verdict.pass ? "ok" : "failed", json);
   return verdict.pass ? 0 : 1;

@@ -92,6 +92,48 @@ TEST(Report, PrintsCountsInFullAndTellsCostsThatWereSpared) {
   EXPECT_FALSE(holds(report.page, ">0 m</text>"));
 }
 
+// Its recipe names noise alone, though the texture is finer than a pixel here and there.
+TEST(Report, TellsBesideTheVerdictWhatWasLeftOut) {
+  const Folder folder;
+  const Written report = report_of(small_run(), folder);
+  const ordered_json& left_out = report.twin.at("left_out");
+  ASSERT_EQ(left_out.size(), 1u) << left_out;
+  EXPECT_EQ(left_out[0].at("effect"), "footprint");
+  EXPECT_EQ(left_out[0].at("by"), "recipe");
+  EXPECT_GT(left_out[0].at("bound_sigma"), 1);
+  const auto note =
+      report.page.find("the verdict does not know what the recipe left out: footprint");
+  EXPECT_LT(note, report.page.find("<nav"));
+  EXPECT_TRUE(holds(report.csv, "left_out,footprint," + left_out[0].at("bound_m").dump() + ",m,"));
+
+  const fs::path run = copy_of_run(folder);
+  const Outcome text = run_scan({"verify", run.string()});
+  EXPECT_EQ(text.exit_code, 0) << text.err;  // the verdict is of what was simulated
+  EXPECT_TRUE(holds(text.out, "PASS\n  the verdict does not know what the recipe left out: foot"));
+  const Outcome json = run_scan({"verify", run.string(), "--json"});
+  EXPECT_EQ(ordered_json::parse(json.out).at("left_out"), left_out);
+  EXPECT_TRUE(holds(ordered_json::parse(json.out).at("warnings").dump(), "left out: footprint"));
+}
+
+// Its sigmas are small for a texture that a pixel does not resolve: see above.
+TEST(Report, SetsOffUncertaintiesThatAreNotHonest) {
+  const auto verdict = ordered_json::parse(slurp(small_run() / "verdict.json"));
+  std::size_t beyond = 0;
+  for (const auto& m : verdict.at("measurements"))
+    if (m.at("expected").is_array()) {
+      EXPECT_TRUE(m.at("name").get<std::string>().starts_with("normalised_")) << m;
+      beyond += m.at("value").get<double>() > m.at("expected")[1].get<double>();
+    }
+  ASSERT_GT(beyond, 0u);
+  const std::string page = slurp(small_run() / "report.html"), words = "uncertainty stated too";
+  std::size_t shown = 0;
+  for (auto at = page.find(words); at != std::string::npos; at = page.find(words, at + 1)) ++shown;
+  EXPECT_EQ(shown, beyond);
+  const Folder folder;
+  const Outcome text = run_scan({"verify", copy_of_run(folder).string()});
+  EXPECT_TRUE(holds(text.out, "uncertainty stated too small (honest: ")) << text.out;
+}
+
 TEST(Report, OfARunIsThatOfTheFolder) {
   const Folder folder;
   const Written report = report_of(small_run(), folder);
