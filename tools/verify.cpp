@@ -108,8 +108,15 @@ void require_area(const std::string& path, const Mesh& mesh) {
     throw Error(Trouble::input, path + ": none of its triangles has an area");
 }
 
+void refuse_emptied(const std::string& path) {
+  if (is_emptied_mesh(path))
+    throw Error(Trouble::input, path + ": is a mesh without a face (element face 0)",
+                "is it a cloud? `scan convert` writes its points without the empty element");
+}
+
 std::vector<Measurement> measure_files(const Arguments& arguments, Console& console) {
   if (is_disparity(arguments.measured)) return measure_disparity(arguments);
+  refuse_emptied(arguments.measured);
   const TrueSurface truth = read_true_surface(arguments.truth);
   for (const Mesh& mesh : truth.meshes) require_area(arguments.truth, mesh);
   warn_of_holes(arguments.truth, truth, console);

@@ -216,6 +216,28 @@ TEST(VerifyInput, ATruthWithHolesIsSaidToHaveThem) {
   EXPECT_FALSE(says(judged(folder, cube_off(1, 0)).outcome, "holes"));
 }
 
+// What a failed reconstruction leaves is no cloud that lies well; one that is can be made so.
+TEST(VerifyInput, AMeshWithoutFacesIsNotTakenForACloud) {
+  const Folder folder;
+  spill(folder / "truth.off", cube_off(1, 0));
+  spill(folder / "empty.ply",
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\n"
+        "property double z\nelement face 0\nproperty list uchar int vertex_indices\n"
+        "end_header\n0 0 0\n1 1 1\n");
+  const std::string empty = (folder / "empty.ply").string(),
+                    truth = (folder / "truth.off").string(),
+                    cloud = (folder / "cloud.ply").string();
+  const Outcome outcome = run_scan({"verify", empty, "--truth", truth});
+  EXPECT_EQ(outcome.exit_code, input) << outcome.out;
+  EXPECT_TRUE(says(outcome, "empty.ply: is a mesh without a face")) << outcome.err;
+  EXPECT_EQ(run_scan({"convert", empty, cloud}).exit_code, 0);
+  EXPECT_EQ(run_scan({"verify", cloud, "--truth", truth}).exit_code, 0);
+  spill(folder / "empty.obj", "v 0 0 0\nv 1 0 0\n");
+  const Outcome obj = run_scan({"info", (folder / "empty.obj").string()});
+  EXPECT_EQ(obj.exit_code, input);
+  EXPECT_TRUE(says(obj, "empty.obj: holds no triangle")) << obj.err;
+}
+
 // Of points without coordinates the cloud keeps none; a surface of none is refused.
 TEST(VerifyInput, ACloudOfNothingIsRefused) {
   const Folder folder;
