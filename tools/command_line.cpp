@@ -214,6 +214,13 @@ double parse_angle_rad(const std::string& text, const std::string& option) {
   return *value_rad;
 }
 
+double parse_number(const std::string& text, const std::string& option) {
+  const auto value = quantity_of(text, {{"", 1}});
+  if (!value)
+    throw Error(Trouble::usage, option + ": '" + text + "' is not a bare number, such as 0.05");
+  return *value;
+}
+
 int run_program(int argc, char** argv, const std::vector<Command>& commands) {
   Console console;
   CLI::App app("libscan " + version_text() +
