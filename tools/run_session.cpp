@@ -11,6 +11,7 @@
 #include "libscan/core/parallel.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
+#include "libscan/io/json_reader.h"
 #include "tools/left_out.h"
 #include "tools/report_stage.h"
 #include "tools/run_files.h"
@@ -32,11 +33,23 @@ const std::map<std::string, std::vector<std::string>> stage_outputs = {
     {"reconstruct", {"surface.ply", "reconstruction.json"}},
     {"verify", {"verdict.json"}}};
 
+// The run in a folder is of this recipe, or not, or nobody can tell.
+void check_same_recipe(const fs::path& run, const std::string& recipe) {
+  const fs::path path = recipe_path(run);
+  if (!fs::exists(path) || read_file(path) == recipe) return;
+  try {
+    (void)read_json(path);
+  } catch (const Error& error) {
+    throw Error(error.trouble(), error.what(),
+                "nobody can tell whose run it is; --force replaces it");
+  }
+  throw Error(Trouble::input, run.string() + ": holds a run of another recipe",
+              "--force replaces it");
+}
+
 RunFolder open_folder(const fs::path& run, const RunSettings& settings, const std::string& recipe) {
   const bool joins = !settings.force && (settings.resume || !settings.shard.empty());
-  if (joins && fs::exists(recipe_path(run)) && read_file(recipe_path(run)) != recipe)
-    throw Error(Trouble::input, run.string() + ": holds a run of another recipe",
-                "--force replaces it");
+  if (joins) check_same_recipe(run, recipe);
   return open_run_folder(run, settings.force ? RunStart::force
                               : joins        ? RunStart::resume
                                              : RunStart::fresh);

@@ -125,6 +125,17 @@ TEST(GoodRecipe, RunsAndRefusesToOverwrite) {
   EXPECT_EQ(files_below(run), files);
   EXPECT_EQ(run_scan({"run", recipe, run, "--resume"}).exit_code, 0);
   EXPECT_EQ(run_scan({"run", recipe, run, "--force"}).exit_code, 0);
+
+  const std::string as_run = slurp(folder / "run/recipe.json");
+  spill(folder / "run/recipe.json", as_run.substr(0, as_run.size() / 2));
+  const Outcome broken = run_scan({"run", recipe, run, "--resume"});
+  EXPECT_EQ(broken.exit_code, 3);
+  EXPECT_NE(broken.err.find("run/recipe.json: not valid JSON near line"), std::string::npos)
+      << broken.err;
+  EXPECT_EQ(broken.err.find("another recipe"), std::string::npos) << broken.err;
+  spill(folder / "run/recipe.json", "{}");
+  EXPECT_NE(run_scan({"run", recipe, run, "--resume"}).err.find("another recipe"),
+            std::string::npos);
 }
 
 }  // namespace

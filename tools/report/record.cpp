@@ -23,8 +23,11 @@ ordered_json read_part(const fs::path& path) {
     read_json(path);
     return ordered_json::parse(read_file(path), nullptr, true, true);
   } catch (const Error& error) {
-    throw Error(error.trouble(), error.what(),
-                "was the run cut short? scan run --resume goes on with it, --force begins anew");
+    const bool is_recipe = path.filename() == "recipe.json";  // without it nothing goes on
+    throw Error(
+        error.trouble(), error.what(),
+        std::string("was the run cut short? scan run ") +
+            (is_recipe ? "--force begins anew" : "--resume goes on with it, --force begins anew"));
   }
 }
 
