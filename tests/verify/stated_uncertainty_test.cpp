@@ -11,6 +11,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/random.h"
+#include "libscan/verify/chi_square.h"
 #include "tests/verify/figure.h"
 
 namespace scan {
@@ -56,6 +57,11 @@ TEST(StatedUncertainty, KnowsWhereHonestFiguresLie) {
   EXPECT_FALSE(measurement(stated_uncertainty("pose", {.squares = {1}, .degrees = 6}, ""),
                            "pose_error_within_95")
                    .expected.has_value());
+}
+
+TEST(StatedUncertainty, TheIntervalHoldsItsEnd) {
+  const NormalisedErrors errors{.squares = {chi_square_quantile(0.95, 1)}};
+  EXPECT_EQ(figure(stated_uncertainty("range", errors, ""), "range_error_within_95"), 1);
 }
 
 // 1 in 20 of honest figures lies beyond; five standard deviations of 1000 of them.
@@ -118,6 +124,8 @@ TEST(StatedUncertainty, OfPosesIsHonestRelativeToTheAnchor) {
     stated.push_back(StatedPose{stated_covariance(), centre.translation()});
   }
   expect_honest(normalised_pose_errors(estimated, truth, stated, 0), "pose");
+  stated[0] = stated[1];  // what the anchor says of itself does not count
+  EXPECT_EQ(normalised_pose_errors(estimated, truth, stated, 0).squares.size(), count);
   stated[1].reset();
   EXPECT_EQ(normalised_pose_errors(estimated, truth, stated, 0).squares.size(), count - 1);
   EXPECT_THROW(normalised_pose_errors(estimated, truth, stated, count + 1), Error);

@@ -61,6 +61,13 @@ TEST(Verdict, ListsAMeasurementOncePerLimit) {
   EXPECT_FALSE(verdict.pass);
 }
 
+TEST(Verdict, FailsWhicheverLimitIsBroken) {
+  EXPECT_FALSE(
+      judge(measured(3), {{"accuracy_rms", "<=", 2, ""}, {"components", "==", 1, ""}}).pass);
+  EXPECT_FALSE(
+      judge(measured(3), {{"accuracy_rms", "<=", 4, ""}, {"components", "==", 2, ""}}).pass);
+}
+
 TEST(Verdict, WithoutLimitsPasses) {
   EXPECT_TRUE(judge(measured(1e9), {}).pass);
 }
