@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "libscan/io/json_reader.h"
+#include "libscan/core/error.h"
 #include "synth/effects/weight.h"
 #include "tools/run_files.h"
 
@@ -32,7 +32,7 @@ std::string bound_text(const ordered_json& effect) {
 }
 
 ordered_json read_if_there(const std::filesystem::path& path) {
-  return std::filesystem::exists(path) ? ordered_json(read_json(path)) : ordered_json();
+  return std::filesystem::exists(path) ? read_ordered_json(path) : ordered_json();
 }
 
 }  // namespace
@@ -67,8 +67,12 @@ std::string left_out_text(const ordered_json& left_out) {
 }
 
 void tell_left_out(const std::filesystem::path& run, ordered_json& verdict, Console& console) {
-  verdict["left_out"] =
-      left_out_effects(read_if_there(run / "effects.json"), read_if_there(recipe_path(run)));
+  const std::filesystem::path effects = run / "effects.json";
+  try {
+    verdict["left_out"] = left_out_effects(read_if_there(effects), read_if_there(recipe_path(run)));
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(Trouble::input, effects.string() + ": holds no effects: " + error.what());
+  }
   const std::string text = left_out_text(verdict["left_out"]);
   if (!text.empty() && console.json) console.warn(text);
 }

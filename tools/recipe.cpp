@@ -12,6 +12,7 @@
 #include "tools/field_reader.h"
 #include "tools/field_writer.h"
 #include "tools/figure_name.h"
+#include "tools/recipe_check.h"
 #include "tools/recipe_fields.h"
 #include "tools/study.h"
 
@@ -127,20 +128,6 @@ ordered_json to_json(const std::vector<Limit>& limits) {
   ordered_json list = ordered_json::array();
   for (const Limit& limit : limits) list.push_back(to_json(limit, unit_suffix(limit.name)));
   return list;
-}
-
-void check_settings(const Recipe& recipe, const std::string& place) {
-  try {
-    check(recipe.scanner);
-    check(recipe.viewpoints);
-    check(recipe.align.icp);
-    check(recipe.reconstruct.ssd);
-    check(recipe.effects);
-    if (recipe.artefacts) check(*recipe.artefacts);
-    check_standing(recipe.scene.scene, true_poses(recipe.viewpoints));
-  } catch (const Error& error) {
-    throw Error(Trouble::input, place + ": " + error.what(), error.hint());
-  }
 }
 
 }  // namespace

@@ -69,8 +69,7 @@ std::vector<std::string> output_files(const fs::path& run, const std::string& st
 }
 
 ordered_json read_or_empty(const fs::path& path) {
-  if (!fs::exists(path)) return ordered_json::object();
-  return ordered_json::parse(read_file(path), nullptr, false);
+  return fs::exists(path) ? read_ordered_json(path) : ordered_json::object();
 }
 
 synth::EffectChoice effect_choice(const std::string& word) {

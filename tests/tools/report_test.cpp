@@ -272,6 +272,22 @@ TEST(Report, OfBrokenFilesIsOneError) {
   EXPECT_EQ(report_of(folder.path(), folder).outcome.exit_code, input);
 }
 
+// Files named on the command line are not the run's.
+TEST(Report, NamesTheFileThatIsNoDataSheetOrStudy) {
+  const Folder folder;
+  spill(folder / "list.json", "[]");
+  spill(folder / "other.json", "{\"a\": 1}");
+  for (const char* option : {"--artefacts", "--tradeoff"})
+    for (const char* file : {"list.json", "other.json"}) {
+      const Written report = report_of(small_run(), folder, {option, (folder / file).string()});
+      EXPECT_EQ(report.outcome.exit_code, input) << option << report.outcome.err;
+      EXPECT_TRUE(holds(report.outcome.err, std::string(file) + ": is no such file: must hold"))
+          << report.outcome.err;
+    }
+  const Written gone = report_of(small_run(), folder, {"--artefacts", "gone.json"});
+  EXPECT_EQ(gone.outcome.err, "error: gone.json: no such file\n");
+}
+
 TEST(Report, RefusesThePageItsTwinsNames) {
   const Outcome outcome =
       run_scan({"report", small_run().string(), (small_run() / "x.json").string()});

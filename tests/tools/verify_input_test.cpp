@@ -201,6 +201,46 @@ TEST(VerifyInput, EachFileCutShortIsNamed) {
   EXPECT_EQ(run_scan({"verify", run}).exit_code, input);
 }
 
+// A run whose effects cannot be read has no verdict that could say what it leaves out.
+TEST(VerifyInput, BrokenEffectsOfARunAreNamed) {
+  const Folder folder;
+  std::filesystem::copy(small_run(), folder / "run", std::filesystem::copy_options::recursive);
+  for (const char* content : {"[1, 2]", "[ {"}) {
+    spill(folder / "run/effects.json", content);
+    const Outcome outcome = run_scan({"verify", (folder / "run").string()});
+    EXPECT_EQ(outcome.exit_code, input) << outcome.err;
+    EXPECT_TRUE(says(outcome, "run/effects.json: ")) << outcome.err;
+  }
+}
+
+// Triangles and points that tell nothing are left out, and that is said.
+TEST(VerifyInput, WhatIsLeftOutOfFilesIsSaid) {
+  const Folder folder;
+  const Judged flat = judged(folder, cube_off(1, 0, "3 0 0 1\n3 2 2 2\n", 2));
+  EXPECT_EQ(flat.outcome.exit_code, 0) << flat.outcome.err;
+  EXPECT_TRUE(says(flat.outcome, "measured.off: 2 of 14 triangles have no area"));
+  const Outcome info = run_scan({"info", (folder / "measured.off").string(), "--json"});
+  EXPECT_EQ(nlohmann::json::parse(info.out).at("triangles_without_area"), 2);
+  EXPECT_FALSE(says(judged(folder, cube_off(1, 0)).outcome, "no area"));
+  spill(folder / "cloud.xyz", "0 0 0\n1 0 0\nnan 0 0\n");
+  const std::string cloud = (folder / "cloud.xyz").string(), words = "1 points are not finite";
+  EXPECT_TRUE(says(run_scan({"verify", cloud, "--truth", (folder / "truth.off").string()}), words));
+  EXPECT_TRUE(says(run_scan({"convert", cloud, (folder / "cloud.ply").string()}), words));
+}
+
+TEST(VerifyInput, FoldersAndEndingsThatCannotBeMeant) {
+  const Folder folder;
+  spill(folder / "truth.off", cube_off(1, 0));
+  const std::string truth = (folder / "truth.off").string();
+  const Outcome is_folder = run_scan({"verify", truth, "--truth", folder.path().string()});
+  EXPECT_EQ(is_folder.exit_code, input);
+  EXPECT_TRUE(says(is_folder, "truth/surface.json")) << is_folder.err;
+  const Outcome jpeg =
+      run_scan({"verify", truth, "--truth", truth, "--picture", (folder / "p.jpg").string()});
+  EXPECT_EQ(jpeg.exit_code, 5);
+  EXPECT_FALSE(std::filesystem::exists(folder / "p.jpg"));
+}
+
 TEST(VerifyInput, ATruthWithHolesIsSaidToHaveThem) {
   const Folder folder;
   std::string open = cube_off(1, 0);
