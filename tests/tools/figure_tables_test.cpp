@@ -86,5 +86,56 @@ TEST(EffectTable, SetsOffWhatWasLeftOut) {
   EXPECT_FALSE(holds(effect_table(ordered_json::array({harmless})), "left out</span>"));
 }
 
+std::string limits_of(Measurement measurement, const Limit& limit) {
+  return limit_table(verdict_json(judge({std::move(measurement)}, {limit})).at("measurements"));
+}
+
+// What is used: of an upper limit the value's share, of a lower one what of the value it asks for,
+// of a bound both ways the size's.
+TEST(LimitTable, TellsHowMuchOfALimitIsUsed) {
+  EXPECT_TRUE(holds(limits_of(flatness(1e-5), {"flatness", "<=", 4e-5, ""}), "'25 percent"));
+  EXPECT_TRUE(holds(limits_of(flatness(4e-5), {"flatness", ">=", 1e-5, ""}), "'25 percent"));
+  EXPECT_TRUE(holds(limits_of(flatness(-1e-5), {"flatness", "within", 4e-5, ""}), "'25 percent"));
+}
+
+TEST(LimitTable, SaysWhereSamplingMayDecide) {
+  const auto close = [](double limit) {
+    Measurement m = flatness(1e-5);
+    m.interval = Interval{0.9e-5, 1.1e-5};
+    return holds(limits_of(m, {"flatness", "<=", limit, ""}), "within its sampling");
+  };
+  EXPECT_FALSE(close(0.8e-5));
+  EXPECT_TRUE(close(0.95e-5));
+  EXPECT_TRUE(close(1.05e-5));
+  EXPECT_FALSE(close(1.2e-5));
+}
+
+TEST(CallOutTable, HasMillimetresBelowAMetre) {
+  const auto row = [](double x) {
+    return call_out_table(ordered_json::array({{{"number", 1},
+                                                {"deviation_m", 1e-3},
+                                                {"position_m", {x, 0.0, -0.25}},
+                                                {"support_m", nullptr}}}));
+  };
+  EXPECT_TRUE(holds(row(0.5), ">500.0</data>")) << row(0.5);
+  EXPECT_TRUE(holds(row(0.5), " mm</td>"));
+  EXPECT_TRUE(holds(row(2), ">2.000</data>")) << row(2);
+  EXPECT_TRUE(holds(row(2), " m</td>"));
+}
+
+TEST(CostTable, TellsEffectsThatTookTimeFromThoseSpared) {
+  const ordered_json effects = {{{"effect", "speckle"}, {"decision", "on"}},
+                                {{"effect", "fog"}, {"decision", "off"}}};
+  const std::string html =
+      cost_table({{"machine", "m"},
+                  {"threads", 2},
+                  {"seconds", {{"align", 1.5}}},
+                  {"effect_seconds", {{"speckle", 2.0}, {"fog", 3.0}, {"motion", 0.0}}}},
+                 effects);
+  EXPECT_TRUE(holds(html, "effect speckle, estimated")) << html;
+  EXPECT_TRUE(holds(html, "effect fog, had it been on")) << html;
+  EXPECT_FALSE(holds(html, "motion")) << html;
+}
+
 }  // namespace
 }  // namespace scan
