@@ -6,55 +6,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/tools/judged_cube.h"
 #include "tests/tools/small_run.h"
 
 namespace scan::test {
 namespace {
 
-constexpr int failed = 1, usage = 2, input = 3;
-
-// A cube of the given edge with a corner at (x, 0, 0); `extra` are further lines of faces.
-std::string cube_off(double edge, double x, const std::string& extra = "", int extra_faces = 0) {
-  std::string text = "OFF\n8 " + std::to_string(12 + extra_faces) + " 0\n";
-  for (int corner = 0; corner < 8; ++corner) {
-    char line[96];
-    std::snprintf(line, sizeof line, "%.17g %.17g %.17g\n", x + edge * (corner & 1),
-                  edge * (corner >> 1 & 1), edge * (corner >> 2 & 1));
-    text += line;
-  }
-  for (const char* face : {"0 2 3", "0 3 1", "4 5 7", "4 7 6", "0 1 5", "0 5 4", "2 6 7", "2 7 3",
-                           "0 4 6", "0 6 2", "1 3 7", "1 7 5"})
-    text += std::string("3 ") + face + "\n";
-  return text + extra;
-}
-
-struct Judged {
-  Outcome outcome;
-  nlohmann::json json;
-  double figure(const std::string& name) const {
-    for (const auto& m : json.at("measurements"))
-      if (m.at("name") == name) return m.at("value").get<double>();
-    throw std::runtime_error(name + " was not measured");
-  }
-};
-
-Judged judged(const Folder& folder, const std::string& measured,
-              const std::vector<std::string>& more = {}) {
-  spill(folder / "measured.off", measured);
-  spill(folder / "truth.off", cube_off(1, 0));
-  std::vector<std::string> arguments{
-      "verify", (folder / "measured.off").string(), "--truth", (folder / "truth.off").string(),
-      "--json",
-  };
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  Judged result{run_scan(arguments), {}};
-  if (!result.outcome.out.empty()) result.json = nlohmann::json::parse(result.outcome.out);
-  return result;
-}
-
-bool says(const Outcome& outcome, const std::string& words) {
-  return outcome.err.find(words) != std::string::npos;
-}
+constexpr int failed = 1, input = 3;
 
 TEST(VerifyInput, AGrownCubeHasItsClosedFormFigures) {
   const Folder folder;
@@ -201,46 +159,6 @@ TEST(VerifyInput, EachFileCutShortIsNamed) {
   EXPECT_EQ(run_scan({"verify", run}).exit_code, input);
 }
 
-// A run whose effects cannot be read has no verdict that could say what it leaves out.
-TEST(VerifyInput, BrokenEffectsOfARunAreNamed) {
-  const Folder folder;
-  std::filesystem::copy(small_run(), folder / "run", std::filesystem::copy_options::recursive);
-  for (const char* content : {"[1, 2]", "[ {"}) {
-    spill(folder / "run/effects.json", content);
-    const Outcome outcome = run_scan({"verify", (folder / "run").string()});
-    EXPECT_EQ(outcome.exit_code, input) << outcome.err;
-    EXPECT_TRUE(says(outcome, "run/effects.json: ")) << outcome.err;
-  }
-}
-
-// Triangles and points that tell nothing are left out, and that is said.
-TEST(VerifyInput, WhatIsLeftOutOfFilesIsSaid) {
-  const Folder folder;
-  const Judged flat = judged(folder, cube_off(1, 0, "3 0 0 1\n3 2 2 2\n", 2));
-  EXPECT_EQ(flat.outcome.exit_code, 0) << flat.outcome.err;
-  EXPECT_TRUE(says(flat.outcome, "measured.off: 2 of 14 triangles have no area"));
-  const Outcome info = run_scan({"info", (folder / "measured.off").string(), "--json"});
-  EXPECT_EQ(nlohmann::json::parse(info.out).at("triangles_without_area"), 2);
-  EXPECT_FALSE(says(judged(folder, cube_off(1, 0)).outcome, "no area"));
-  spill(folder / "cloud.xyz", "0 0 0\n1 0 0\nnan 0 0\n");
-  const std::string cloud = (folder / "cloud.xyz").string(), words = "1 points are not finite";
-  EXPECT_TRUE(says(run_scan({"verify", cloud, "--truth", (folder / "truth.off").string()}), words));
-  EXPECT_TRUE(says(run_scan({"convert", cloud, (folder / "cloud.ply").string()}), words));
-}
-
-TEST(VerifyInput, FoldersAndEndingsThatCannotBeMeant) {
-  const Folder folder;
-  spill(folder / "truth.off", cube_off(1, 0));
-  const std::string truth = (folder / "truth.off").string();
-  const Outcome is_folder = run_scan({"verify", truth, "--truth", folder.path().string()});
-  EXPECT_EQ(is_folder.exit_code, input);
-  EXPECT_TRUE(says(is_folder, "truth/surface.json")) << is_folder.err;
-  const Outcome jpeg =
-      run_scan({"verify", truth, "--truth", truth, "--picture", (folder / "p.jpg").string()});
-  EXPECT_EQ(jpeg.exit_code, 5);
-  EXPECT_FALSE(std::filesystem::exists(folder / "p.jpg"));
-}
-
 TEST(VerifyInput, ATruthWithHolesIsSaidToHaveThem) {
   const Folder folder;
   std::string open = cube_off(1, 0);
@@ -254,28 +172,6 @@ TEST(VerifyInput, ATruthWithHolesIsSaidToHaveThem) {
   EXPECT_TRUE(says(outcome, "has holes (3 boundary edges)")) << outcome.err;
   EXPECT_EQ(outcome.out.find("volume_error"), std::string::npos);
   EXPECT_FALSE(says(judged(folder, cube_off(1, 0)).outcome, "holes"));
-}
-
-// What a failed reconstruction leaves is no cloud that lies well; one that is can be made so.
-TEST(VerifyInput, AMeshWithoutFacesIsNotTakenForACloud) {
-  const Folder folder;
-  spill(folder / "truth.off", cube_off(1, 0));
-  spill(folder / "empty.ply",
-        "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\n"
-        "property double z\nelement face 0\nproperty list uchar int vertex_indices\n"
-        "end_header\n0 0 0\n1 1 1\n");
-  const std::string empty = (folder / "empty.ply").string(),
-                    truth = (folder / "truth.off").string(),
-                    cloud = (folder / "cloud.ply").string();
-  const Outcome outcome = run_scan({"verify", empty, "--truth", truth});
-  EXPECT_EQ(outcome.exit_code, input) << outcome.out;
-  EXPECT_TRUE(says(outcome, "empty.ply: is a mesh without a face")) << outcome.err;
-  EXPECT_EQ(run_scan({"convert", empty, cloud}).exit_code, 0);
-  EXPECT_EQ(run_scan({"verify", cloud, "--truth", truth}).exit_code, 0);
-  spill(folder / "empty.obj", "v 0 0 0\nv 1 0 0\n");
-  const Outcome obj = run_scan({"info", (folder / "empty.obj").string()});
-  EXPECT_EQ(obj.exit_code, input);
-  EXPECT_TRUE(says(obj, "empty.obj: holds no triangle")) << obj.err;
 }
 
 // Of points without coordinates the cloud keeps none; a surface of none is refused.
@@ -303,30 +199,6 @@ TEST(VerifyInput, WithoutLimitsThereIsNoVerdict) {
   const Outcome judged =
       run_scan({"verify", truth, "--truth", truth, "--limits", (folder / "limits.json").string()});
   EXPECT_NE(judged.out.find("PASS"), std::string::npos) << judged.out;
-}
-
-// What a recipe says is not said a second time, and a cloud has no picture.
-TEST(VerifyInput, OptionsThatWouldBePassedOverAreRefused) {
-  const Folder folder;
-  std::filesystem::create_directory(folder / "run");
-  spill(folder / "truth.off", cube_off(1, 0));
-  spill(folder / "cloud.xyz", "0 0 0\n1 0 0\n");
-  const std::string run = (folder / "run").string(), truth = (folder / "truth.off").string(),
-                    cloud = (folder / "cloud.xyz").string();
-  const std::vector<std::vector<std::string>> unused = {
-      {run, "--limits", "limits.json"},
-      {run, "--truth", truth},
-      {run, "--threshold", "1mm"},
-      {run, "--picture", "p.png"},
-      {truth, "--truth", truth, "--doffs", "3"},
-      {cloud, "--truth", truth, "--picture", "p.png"}};
-  for (std::vector<std::string> words : unused) {
-    const std::string option = words[words.size() - 2];
-    words.insert(words.begin(), "verify");
-    const Outcome outcome = run_scan(words);
-    EXPECT_EQ(outcome.exit_code, usage) << option << outcome.err;
-    EXPECT_TRUE(says(outcome, option)) << outcome.err;
-  }
 }
 
 TEST(VerifyInput, ALimitOnWhatWasNotMeasuredIsAnError) {
