@@ -59,8 +59,18 @@ void check_disparity_output(const Arguments& arguments) {
   check_output(path);
 }
 
+// What was asked for and would be passed over.
+void refuse_unused(const Arguments& arguments) {
+  const Arguments usual;
+  if (arguments.peak != usual.peak && arguments.device != "laser-line")
+    throw Error(Trouble::usage, "--peak: is for laser-line");
+  if (arguments.pulse != usual.pulse && arguments.device != "waveform")
+    throw Error(Trouble::usage, "--pulse: is for waveform");
+}
+
 int acquire_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
+  refuse_unused(arguments);
   check_output(output);
   check_scan_ending(output);
   check_disparity_output(arguments);

@@ -27,6 +27,7 @@ struct Arguments {
 
 void open_study(const Arguments& arguments) {
   const fs::path out = arguments.out;
+  make_folder(out);
   if (fs::exists(out / "runs") && !arguments.resume && !arguments.force)
     throw Error(Trouble::output, arguments.out + ": holds an earlier study",
                 "--resume goes on with it, --force replaces it");

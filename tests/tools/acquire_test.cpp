@@ -71,6 +71,15 @@ TEST(Acquire, RefusesOutputsThatCannotBeMeant) {
                 (folder / "disparity.pfm").string()});
   EXPECT_EQ(other.exit_code, usage) << other.err;
   EXPECT_NE(other.err.find("--disparity goes with stereo"), std::string::npos) << other.err;
+  for (const auto& [option, value] :
+       {std::pair("--peak", "centroid"), std::pair("--pulse", "leading-edge")}) {
+    const Outcome unused =
+        run_scan({"acquire", "stereo", (folder / "left.png").string(),
+                  (folder / "right.png").string(), (folder / "points.ply").string(),
+                  "--calibration", (folder / "calib.txt").string(), option, value});
+    EXPECT_EQ(unused.exit_code, usage) << unused.err;
+    EXPECT_NE(unused.err.find(option), std::string::npos) << unused.err;
+  }
   EXPECT_EQ(files_below(folder.path()), inputs);
 }
 

@@ -208,6 +208,14 @@ TEST(Tradeoff, NamesWhatIsWrongWithItsRecipe) {
             std::string::npos);
 }
 
+TEST(Tradeoff, WantsAFolderToWriteInto) {
+  const Folder folder;
+  spill(folder / "out", "a file");
+  const Outcome outcome = tradeoff(folder, depths);
+  EXPECT_EQ(outcome.exit_code, output) << outcome.err;
+  EXPECT_NE(outcome.err.find("is a file, a folder is needed"), std::string::npos) << outcome.err;
+}
+
 // A scanner that sees nothing within its range: each run fails, and the first reason is given.
 TEST(Tradeoff, OfRunsThatAllFailSaysWhy) {
   const Folder folder;
