@@ -4,7 +4,7 @@
 // made.
 #include <gtest/gtest.h>
 
-#include "tests/tools/program.h"
+#include "tests/tools/small_run.h"
 
 namespace scan::test {
 namespace {
@@ -162,7 +162,14 @@ TEST(GoodRecipe, RunsAndRefusesToOverwrite) {
   EXPECT_EQ(files_below(run), files);
   EXPECT_EQ(run_scan({"run", recipe, run, "--resume"}).exit_code, 0);
   EXPECT_EQ(run_scan({"run", recipe, run, "--force"}).exit_code, 0);
+}
 
+// A run that was cut short goes on, or says which file it cannot go on from.
+TEST(ResumedRun, MakesCutScansAnewAndNamesWhatIsBroken) {
+  const Folder folder;
+  std::filesystem::copy(small_run(), folder / "run", std::filesystem::copy_options::recursive);
+  const std::string recipe = LIBSCAN_SOURCE_DIR "/tests/tools/small_run.json",
+                    run = (folder / "run").string();
   const std::string scan = slurp(folder / "run/scans/003.ply");
   spill(folder / "run/scans/003.ply", scan.substr(0, scan.size() / 2));
   EXPECT_EQ(run_scan({"run", recipe, run, "--resume"}).exit_code, 0);
