@@ -3,6 +3,7 @@
 // scan acquire: a device's raw data to points.
 #include "libscan/acquire/acquire.h"
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
@@ -34,35 +35,57 @@ AcquireOptions options_from(const Arguments& arguments) {
   return options;
 }
 
-// Decodes; for stereo the disparity image is written beside if asked for.
-Scan decode(const Arguments& arguments, const RawFrames& frames) {
+struct Decoded {
+  Scan scan;
+  Image<float> disparity_px;  // of stereo, if asked for
+};
+
+Decoded decode(const Arguments& arguments, const RawFrames& frames) {
   const AcquireOptions options = options_from(arguments);
-  const auto* pair = std::get_if<ImagePair>(&frames);
-  if (arguments.disparity.empty()) return acquire(frames, options);
-  if (!pair) throw Error(Trouble::usage, "--disparity goes with stereo");
-  const DisparityMap map = match(*pair, options.stereo);
-  Scan scan = points_from(map, pair->calibration);
+  if (arguments.disparity.empty()) return {acquire(frames, options), {}};
+  const ImagePair& pair = std::get<ImagePair>(frames);
+  DisparityMap map = match(pair, options.stereo);
+  Scan scan = points_from(map, pair.calibration);
   estimate_normals(scan, options.normals);
-  write_pfm(arguments.disparity, map.disparity_px);
-  return scan;
+  return {std::move(scan), std::move(map.disparity_px)};
+}
+
+void check_disparity_output(const Arguments& arguments) {
+  const std::string& path = arguments.disparity;
+  if (path.empty()) return;
+  if (arguments.device != "stereo") throw Error(Trouble::usage, "--disparity goes with stereo");
+  if (std::filesystem::path(path).extension() != ".pfm")
+    throw Error(Trouble::output, "--disparity: " + path + ": must end in .pfm");
+  check_output(path);
+}
+
+// What was asked for and would be passed over.
+void refuse_unused(const Arguments& arguments) {
+  const Arguments usual;
+  if (arguments.peak != usual.peak && arguments.device != "laser-line")
+    throw Error(Trouble::usage, "--peak: is for laser-line");
+  if (arguments.pulse != usual.pulse && arguments.device != "waveform")
+    throw Error(Trouble::usage, "--pulse: is for waveform");
 }
 
 int acquire_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
+  refuse_unused(arguments);
   check_output(output);
   check_scan_ending(output);
-  if (!arguments.disparity.empty()) check_output(arguments.disparity);
+  check_disparity_output(arguments);
   if (arguments.calibration.empty())
     throw Error(Trouble::usage, "--calibration: is missing, what the device's numbers mean",
                 "scan calibrate makes one");
   const Stopwatch watch;
   const RawFrames frames =
       read_raw_frames(arguments.device, {inputs.begin(), inputs.end()}, arguments.calibration);
-  Scan scan = decode(arguments, frames);
+  const auto [scan, disparity_px] = decode(arguments, frames);
   console.time("acquire", watch.seconds());
   if (scan.cloud.empty())
     throw Error(Trouble::computation, output + ": no ray gave a point; nothing written");
   write_scan(output, scan);
+  if (!arguments.disparity.empty()) write_pfm(arguments.disparity, disparity_px);
   const auto summary = scan_json(output, scan);
   console.say(output + ": " + std::to_string(scan.cloud.size()) + " points");
   for (const auto& [reason, count] : scan.misses)

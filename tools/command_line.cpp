@@ -183,6 +183,15 @@ int run_action(const Declared& declared, Console& console) {
   }
 }
 
+// `scan help align` is `scan align --help`.
+int run_help(int argc, char** argv, const std::vector<Command>& commands) {
+  std::string help = "--help";
+  std::vector<char*> words = {argv[0]};
+  if (argc > 2) words.push_back(argv[2]);
+  words.push_back(help.data());
+  return run_program(static_cast<int>(words.size()), words.data(), commands);
+}
+
 }  // namespace
 
 void declare_shared_options(CommandLine& line, Console& console) {
@@ -214,6 +223,13 @@ double parse_angle_rad(const std::string& text, const std::string& option) {
   return *value_rad;
 }
 
+double parse_number(const std::string& text, const std::string& option) {
+  const auto value = quantity_of(text, {{"", 1}});
+  if (!value)
+    throw Error(Trouble::usage, option + ": '" + text + "' is not a bare number, such as 0.05");
+  return *value;
+}
+
 int run_program(int argc, char** argv, const std::vector<Command>& commands) {
   Console console;
   CLI::App app("libscan " + version_text() +
@@ -235,6 +251,7 @@ int run_program(int argc, char** argv, const std::vector<Command>& commands) {
       "Run 'scan COMMAND --help' for a command's arguments and an example.\n"
       "Exit codes: 0 ok; 1 verification failed; 2 usage; 3 input; 4 computation;\n"
       "5 output; 6 resource limit; 130 interrupted.");
+  if (argc > 1 && std::string(argv[1]) == "help") return run_help(argc, argv, commands);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

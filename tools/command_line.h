@@ -57,4 +57,7 @@ double parse_length_m(const std::string& text, const std::string& option);
 // "2deg", "35mrad", "0.035rad", "0.035" (radians), at most half a turn.
 double parse_angle_rad(const std::string& text, const std::string& option);
 
+// "0.05": not negative, without a unit.
+double parse_number(const std::string& text, const std::string& option);
+
 }  // namespace scan

@@ -34,7 +34,7 @@ void convert_poses(const std::string& from, const std::string& to) {
   write_matrix(to, poses.front().pose);
 }
 
-void convert_file(const std::string& from, const std::string& to) {
+void convert_file(const std::string& from, const std::string& to, Console& console) {
   const std::string in = ending(from), out = ending(to);
   if (out == ".pfm") return write_pfm(to, read_float_image(from));
   if (one_of(out, {".tum", ".kitti", ".xf"})) return convert_poses(from, to);
@@ -42,7 +42,11 @@ void convert_file(const std::string& from, const std::string& to) {
       one_of(out, {".obj", ".stl", ".off"}) || (out == ".ply" && holds_triangles(from));
   if (mesh) return write_mesh(to, read_mesh(from));
   if (one_of(out, {".ply", ".pcd", ".xyz", ".txt", ".asc"})) {
-    if (!holds_triangles(from)) return write_scan(to, read_scan(from));
+    if (!holds_triangles(from)) {
+      const Scan scan = read_scan(from);
+      warn_of_lost_points(from, scan, console);
+      return write_scan(to, scan);
+    }
     return write_scan(to, Scan{.name = "", .cloud = {.points = read_mesh(from).vertices}});
   }
   throw Error(Trouble::usage, to + ": no way to write '" + out + "'",
@@ -61,7 +65,7 @@ Action convert_command(CommandLine& line) {
   line.input("OUT", arguments->to, "the file to write; its ending names the format");
   return [arguments](Console& console) {
     check_output(arguments->to);
-    convert_file(arguments->from, arguments->to);
+    convert_file(arguments->from, arguments->to, console);
     console.say(arguments->to + ": written");
     console.finish("convert", "ok", {{"file", arguments->to}});
     return 0;

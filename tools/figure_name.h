@@ -1,15 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// The name of a figure in a recipe, held against those that verify knows before anything runs.
+// Words of a recipe's limits: the name of a figure, held against those that verify knows before
+// anything runs.
 #pragma once
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "libscan/io/json_reader.h"
 #include "libscan/verify/definitions.h"
 
 namespace scan {
+
+// The words of a recipe's limits and the relations that they mean; "within" is of the size of what
+// may be below 0.
+inline constexpr std::pair<const char*, const char*> limit_words[] = {
+    {"at_most", "<="}, {"at_least", ">="}, {"equals", "=="}, {"within", "within"}};
 
 inline std::string_view text_of(FigureSource source) {
   switch (source) {

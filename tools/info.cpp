@@ -7,6 +7,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/scan_file.h"
 #include "tools/commands.h"
+#include "tools/inputs.h"
 
 namespace scan {
 namespace {
@@ -38,9 +39,12 @@ ordered_json describe_mesh(const std::string& path, Console& console) {
       (census.watertight ? "watertight, genus " + std::to_string(census.genus)
                          : std::to_string(census.boundary_edges) + " boundary edges, " +
                                std::to_string(census.non_manifold_edges) + " non-manifold"));
+  const std::size_t flat = flat_triangles(mesh);
+  if (flat > 0) console.say("  " + std::to_string(flat) + " triangles have no area");
   return {{"kind", "mesh"},
           {"vertices", mesh.vertices.size()},
           {"triangles", mesh.triangles.size()},
+          {"triangles_without_area", flat},
           {"bounds", bounds_json(box)},
           {"area_m2", area_m2(mesh)},
           {"volume_m3", census.watertight ? ordered_json(volume_m3(mesh)) : ordered_json(nullptr)},

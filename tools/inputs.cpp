@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/inputs.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -46,6 +47,9 @@ std::pair<std::vector<std::string>, std::string> split_output(std::vector<std::s
     throw Error(Trouble::usage, "needs at least one input and, last, the output");
   std::string output = std::move(paths.back());
   paths.pop_back();
+  for (const std::string& path : paths)
+    if (std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(output))
+      throw Error(Trouble::usage, output + ": is an input, too; the last one is the output");
   return {std::move(paths), std::move(output)};
 }
 
@@ -57,13 +61,32 @@ void check_output(const std::string& path) {
     throw Error(Trouble::output, path + ": folder " + folder.string() + " does not exist");
 }
 
+void warn_of_lost_points(const std::string& path, const Scan& scan, Console& console) {
+  if (const auto bad = scan.misses.find("not finite"); bad != scan.misses.end())
+    console.warn(path + ": " + std::to_string(bad->second) + " points are not finite, left out");
+}
+
+std::size_t flat_triangles(const Mesh& mesh) {
+  return static_cast<std::size_t>(
+      std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                    [&](const Triangle& t) { return !(area_vector(mesh, t).norm() > 0); }));
+}
+
+void warn_of_flat_triangles(const std::string& path, const Mesh& mesh, Console& console) {
+  const std::size_t flat = flat_triangles(mesh);
+  if (flat == mesh.triangles.size())
+    throw Error(Trouble::input, path + ": none of its triangles has an area");
+  if (flat > 0)
+    console.warn(path + ": " + std::to_string(flat) + " of " +
+                 std::to_string(mesh.triangles.size()) + " triangles have no area");
+}
+
 std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths, Console& console) {
   std::vector<Scan> scans;
   for (const std::string& path : paths) {
     scans.push_back(read_scan(path));
     Scan& scan = scans.back();
-    if (const auto bad = scan.misses.find("not finite"); bad != scan.misses.end())
-      console.warn(path + ": " + std::to_string(bad->second) + " points are not finite, left out");
+    warn_of_lost_points(path, scan, console);
     if (!scan.cloud.normals.empty()) continue;
     console.detail(path + ": has no normals; estimated from neighbouring points");
     estimate_normals(scan);

@@ -15,7 +15,8 @@
 
 namespace scan {
 
-// Splits INPUT... OUT; scan::Error (usage) if there are not at least one input and the output.
+// Splits INPUT... OUT; scan::Error (usage) if there are not at least one input and the output, or
+// the output is an input.
 std::pair<std::vector<std::string>, std::string> split_output(std::vector<std::string> paths);
 
 // scan::Error (output) if `path` is a folder or its folder does not exist, before long work starts.
@@ -23,6 +24,13 @@ void check_output(const std::string& path);
 
 // Reads scans; those without normals get them by plane fits, facing their viewpoint.
 std::vector<Scan> read_scans_with_normals(const std::vector<std::string>& paths, Console& console);
+
+// Warns of points that were not finite and are not in the scan.
+void warn_of_lost_points(const std::string& path, const Scan& scan, Console& console);
+
+// Triangles without area, and a warning of them; scan::Error (input) if there are no others.
+std::size_t flat_triangles(const Mesh& mesh);
+void warn_of_flat_triangles(const std::string& path, const Mesh& mesh, Console& console);
 
 // Warns of a measured surface or cloud whose box cannot be that of the truth: another unit (with
 // the factor) or another frame (with the gap). Says nothing where the truth has no end.

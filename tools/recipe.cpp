@@ -12,6 +12,7 @@
 #include "tools/field_reader.h"
 #include "tools/field_writer.h"
 #include "tools/figure_name.h"
+#include "tools/recipe_check.h"
 #include "tools/recipe_fields.h"
 #include "tools/study.h"
 
@@ -94,8 +95,7 @@ std::optional<double> read_bound(JsonReader& reader, const std::string& word,
 Limit read_limit(JsonReader reader, FigureSource source) {
   Limit limit{
       .name = read_figure(reader, "name", source), .relation = "", .value = 0, .reason = ""};
-  for (const auto& [word, relation] :
-       {std::pair("at_most", "<="), std::pair("at_least", ">="), std::pair("equals", "==")}) {
+  for (const auto& [word, relation] : limit_words) {
     const auto bound = read_bound(reader, word, limit.name);
     if (!bound) continue;
     if (!limit.relation.empty()) reader.fail(word, "is a second limit; one limit an entry");
@@ -103,7 +103,7 @@ Limit read_limit(JsonReader reader, FigureSource source) {
     limit.value = *bound;
   }
   if (limit.relation.empty())
-    reader.fail("name", "has no at_most, at_least or equals (with the unit: at_most_mm)");
+    reader.fail("name", "has no at_most, at_least, equals or within (with the unit: at_most_mm)");
   limit.reason = reader.text("reason");
   reader.finish();
   return limit;
@@ -118,30 +118,16 @@ std::vector<Limit> read_limits(JsonReader& reader, const char* key, FigureSource
 }
 
 ordered_json to_json(const Limit& limit, const std::string& unit) {
-  const std::string word = limit.relation == "<="   ? "at_most"
-                           : limit.relation == ">=" ? "at_least"
-                                                    : "equals";
-  return {{"name", limit.name}, {word + unit, limit.value}, {"reason", limit.reason}};
+  std::string key;
+  for (const auto& [word, relation] : limit_words)
+    if (limit.relation == relation) key = word + unit;
+  return {{"name", limit.name}, {key, limit.value}, {"reason", limit.reason}};
 }
 
 ordered_json to_json(const std::vector<Limit>& limits) {
   ordered_json list = ordered_json::array();
   for (const Limit& limit : limits) list.push_back(to_json(limit, unit_suffix(limit.name)));
   return list;
-}
-
-void check_settings(const Recipe& recipe, const std::string& place) {
-  try {
-    check(recipe.scanner);
-    check(recipe.viewpoints);
-    check(recipe.align.icp);
-    check(recipe.reconstruct.ssd);
-    check(recipe.effects);
-    if (recipe.artefacts) check(*recipe.artefacts);
-    check_standing(recipe.scene.scene, true_poses(recipe.viewpoints));
-  } catch (const Error& error) {
-    throw Error(Trouble::input, place + ": " + error.what(), error.hint());
-  }
 }
 
 }  // namespace

@@ -72,6 +72,7 @@ void read_object(JsonReader reader, const std::map<std::string, int>& materials,
     file = std::filesystem::absolute(folder / reader.text("mesh")).lexically_normal();
     unit_m = look_up(mesh_units, reader.text("unit"), reader, "unit");
     TexturedMesh textured = read_object_mesh(file, reader);
+    if (!(area_m2(textured.mesh) > 0)) reader.fail("mesh", "none of its triangles has an area");
     for (auto& vertex : textured.mesh.vertices) vertex *= unit_m;
     object.geometry = std::move(textured.mesh);
     object.texture_corners = std::move(textured.corners);

@@ -3,6 +3,7 @@
 #include "tools/recipe_schema.h"
 
 #include "tools/field_schema.h"
+#include "tools/figure_name.h"
 #include "tools/recipe_fields.h"
 #include "tools/scene_schema.h"
 #include "tools/study.h"
@@ -33,10 +34,10 @@ ordered_json limit_schema() {
   require(schema, "name");
   require(schema, "reason");
   std::vector<std::string> relations;
-  for (const std::string relation : {"at_most", "at_least", "equals"}) {
-    relations.push_back(relation);
+  for (const auto& [word, relation] : limit_words) {
+    relations.emplace_back(word);
     for (const Quantity quantity : {Quantity::length, Quantity::angle})
-      for (const std::string& unit : unit_suffixes(quantity)) relations.push_back(relation + unit);
+      for (const std::string& unit : unit_suffixes(quantity)) relations.push_back(word + unit);
   }
   for (const std::string& relation : relations)
     schema["properties"][relation] = {{"type", "number"}};

@@ -116,6 +116,21 @@ void tell_of_work(const SurfaceResult& result, Console& console) {
                 readable_length(result.parts.seam_largest_m));
 }
 
+// Errors about the points name the files that they are from.
+SurfaceResult surface_of(const std::vector<std::string>& inputs, const std::vector<Scan>& scans,
+                         const std::vector<Pose>& poses, const StatedPoses& stated,
+                         const ReconstructSettings& settings, Console& console) {
+  try {
+    return make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
+                        common_errors(scans, stated), settings, console);
+  } catch (const Error& error) {
+    if (error.trouble() != Trouble::input) throw;
+    const std::string more =
+        inputs.size() > 1 ? " and " + std::to_string(inputs.size() - 1) + " more" : "";
+    throw Error(error.trouble(), inputs.front() + more + ": " + error.what(), error.hint());
+  }
+}
+
 int reconstruct_files(const Arguments& arguments, Console& console) {
   const auto [inputs, output] = split_output(arguments.paths);
   check_output(output);
@@ -128,8 +143,7 @@ int reconstruct_files(const Arguments& arguments, Console& console) {
   StatedPoses stated;
   if (arguments.poses.ends_with(".json")) stated = read_stated_poses(arguments.poses);
   const ReconstructSettings settings = settings_of(arguments);
-  const SurfaceResult result = make_surface(joined(scans, poses), joined_viewpoints(scans, poses),
-                                            common_errors(scans, stated), settings, console);
+  const SurfaceResult result = surface_of(inputs, scans, poses, stated, settings, console);
   write_supported_mesh(output, supported(result));
   const auto json = surface_json(result);
   if (settings.method == ReconstructMethod::automatic)

@@ -3,8 +3,11 @@
 #include "tools/run_files.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "libscan/core/error.h"
+#include "libscan/io/atomic_file.h"
+#include "libscan/io/json_reader.h"
 #include "libscan/io/poses.h"
 #include "libscan/io/scan_file.h"
 #include "libscan/io/stated_poses_file.h"
@@ -31,6 +34,11 @@ std::filesystem::path raw_path(const std::filesystem::path& run, std::size_t ind
 
 std::filesystem::path truth_path(const std::filesystem::path& run) {
   return run / "truth";
+}
+
+nlohmann::ordered_json read_ordered_json(const std::filesystem::path& path) {
+  (void)read_json(path);  // which says more of what is broken
+  return nlohmann::ordered_json::parse(read_file(path), nullptr, true, true);
 }
 
 std::vector<Scan> read_run_scans(const std::filesystem::path& run) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,10 @@ std::filesystem::path recipe_path(const std::filesystem::path& run);
 std::filesystem::path scan_path(const std::filesystem::path& run, std::size_t index);
 std::filesystem::path raw_path(const std::filesystem::path& run, std::size_t index);
 std::filesystem::path truth_path(const std::filesystem::path& run);
+
+// As it stands in the file, keys in their order. scan::Error (input) names the place of what is
+// broken.
+nlohmann::ordered_json read_ordered_json(const std::filesystem::path& path);
 
 // All scans in scans/, in their order. scan::Error (input) if there are none.
 std::vector<Scan> read_run_scans(const std::filesystem::path& run);

@@ -11,9 +11,12 @@
 #include "libscan/core/parallel.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
+#include "libscan/io/json_reader.h"
+#include "tools/left_out.h"
 #include "tools/report_stage.h"
 #include "tools/run_files.h"
 #include "tools/run_stages.h"
+#include "tools/verdict_text.h"
 #include "tools/version.h"
 
 namespace scan {
@@ -30,11 +33,23 @@ const std::map<std::string, std::vector<std::string>> stage_outputs = {
     {"reconstruct", {"surface.ply", "reconstruction.json"}},
     {"verify", {"verdict.json"}}};
 
+// The run in a folder is of this recipe, or not, or nobody can tell.
+void check_same_recipe(const fs::path& run, const std::string& recipe) {
+  const fs::path path = recipe_path(run);
+  if (!fs::exists(path) || read_file(path) == recipe) return;
+  try {
+    (void)read_json(path);
+  } catch (const Error& error) {
+    throw Error(error.trouble(), error.what(),
+                "nobody can tell whose run it is; --force replaces it");
+  }
+  throw Error(Trouble::input, run.string() + ": holds a run of another recipe",
+              "--force replaces it");
+}
+
 RunFolder open_folder(const fs::path& run, const RunSettings& settings, const std::string& recipe) {
   const bool joins = !settings.force && (settings.resume || !settings.shard.empty());
-  if (joins && fs::exists(recipe_path(run)) && read_file(recipe_path(run)) != recipe)
-    throw Error(Trouble::input, run.string() + ": holds a run of another recipe",
-                "--force replaces it");
+  if (joins) check_same_recipe(run, recipe);
   return open_run_folder(run, settings.force ? RunStart::force
                               : joins        ? RunStart::resume
                                              : RunStart::fresh);
@@ -54,8 +69,7 @@ std::vector<std::string> output_files(const fs::path& run, const std::string& st
 }
 
 ordered_json read_or_empty(const fs::path& path) {
-  if (!fs::exists(path)) return ordered_json::object();
-  return ordered_json::parse(read_file(path), nullptr, false);
+  return fs::exists(path) ? read_ordered_json(path) : ordered_json::object();
 }
 
 synth::EffectChoice effect_choice(const std::string& word) {
@@ -171,7 +185,8 @@ int RunSession::finish(const std::string& command, const ordered_json& more, boo
     result["rays_per_second"] = rays_of(result["scans"]) / seconds;
   for (const auto& [key, value] : more.items()) result[key] = value;
   if (fs::exists(run_ / "verdict.json")) {
-    const ordered_json verdict = read_or_empty(run_ / "verdict.json");
+    ordered_json verdict = read_or_empty(run_ / "verdict.json");
+    tell_left_out(run_, verdict, console_);
     for (const auto& [key, value] : verdict.items()) result[key] = value;
     pass = pass && verdict.value("pass", false);
     say_verdict(verdict, console_);

@@ -114,31 +114,4 @@ Verdict verify_run(const std::filesystem::path& run, Console&) {
   return verdict;
 }
 
-void say_verdict(const ordered_json& verdict, const Console& console) {
-  const auto readable = [](const ordered_json& value, const std::string& unit) {
-    return value.is_number() ? readable_value(value.get<double>(), unit) : "unknown";
-  };
-  for (const auto& m : verdict.at("measurements")) {
-    const std::string unit = m.at("unit");
-    char line[256];
-    std::snprintf(line, sizeof line, "  %-28s %12s", m.at("name").get<std::string>().c_str(),
-                  readable(m.at("value"), unit).c_str());
-    std::string text = line;
-    if (m.contains("predicted")) text += "   predicted " + readable(m.at("predicted"), unit);
-    if (!m.at("limit").is_null())
-      text += std::string("   ") + (m.at("pass").get<bool>() ? "pass" : "FAIL") + " (" +
-              m.at("relation").get<std::string>() + " " + readable(m.at("limit"), unit) + ")";
-    console.say(text);
-    console.say("      " + m.at("definition").get<std::string>() + " [" +
-                m.at("over").get<std::string>() +
-                "; n = " + std::to_string(m.at("count").get<std::size_t>()) + "]");
-  }
-  const auto& all = verdict.at("measurements");
-  const bool is_judged =
-      std::any_of(all.begin(), all.end(), [](const auto& m) { return !m.at("limit").is_null(); });
-  console.say(!is_judged                       ? "no limits, no verdict"
-              : verdict.at("pass").get<bool>() ? "PASS"
-                                               : "FAIL");
-}
-
 }  // namespace scan

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 
 #include "libscan/verify/verdict.h"
 #include "tools/console.h"
@@ -36,9 +35,5 @@ void reconstruct_run(const std::filesystem::path& run, const Recipe& recipe, Con
 
 // Everything and truth/ -> verdict.json.
 Verdict verify_run(const std::filesystem::path& run, Console& console);
-
-// Each measurement of a verdict.json, with its prediction where there is one, and its definition in
-// the line below; then PASS or FAIL.
-void say_verdict(const nlohmann::ordered_json& verdict, const Console& console);
 
 }  // namespace scan

@@ -42,6 +42,15 @@ fs::path seconds_path(const fs::path& run, std::size_t i) {
   return run / "timings" / (scan_name(i) + ".json");
 }
 
+fs::path rays_path(const fs::path& run, std::size_t i) {
+  return truth_path(run) / (scan_name(i) + ".ply");
+}
+
+// Of a scan and its truth: a file that was cut short has fewer.
+std::size_t bytes_of(const fs::path& run, std::size_t i) {
+  return fs::file_size(scan_path(run, i)) + fs::file_size(rays_path(run, i));
+}
+
 // What one scan's simulation took and how near it came.
 struct ScanRecord {
   std::uint64_t paths = 0;
@@ -54,19 +63,22 @@ void write_record(const fs::path& run, std::size_t i, const std::string& inputs,
                   const ScanRecord& record) {
   write_json(seconds_path(run, i),
              {{"simulate", record.simulate_s}, {"acquire", record.acquire_s}});
-  write_json(
-      record_path(run, i),
-      {{"inputs", inputs}, {"paths", record.paths}, {"sampling_error", record.sampling_error}});
+  write_json(record_path(run, i), {{"inputs", inputs},
+                                   {"paths", record.paths},
+                                   {"sampling_error", record.sampling_error},
+                                   {"bytes", bytes_of(run, i)}});
 }
 
 // None if the scan is not whole, or was made of other inputs.
 std::optional<ScanRecord> read_record(const fs::path& run, std::size_t i,
                                       const std::string& inputs) {
-  for (const fs::path& file : {record_path(run, i), seconds_path(run, i), scan_path(run, i)})
+  for (const fs::path& file :
+       {record_path(run, i), seconds_path(run, i), scan_path(run, i), rays_path(run, i)})
     if (!fs::exists(file)) return std::nullopt;
   const nlohmann::json record = read_json(record_path(run, i));
   const nlohmann::json seconds = read_json(seconds_path(run, i));
-  if (record.value("inputs", "") != inputs) return std::nullopt;
+  if (record.value("inputs", "") != inputs || record.value("bytes", 0ul) != bytes_of(run, i))
+    return std::nullopt;
   return ScanRecord{record.value("paths", std::uint64_t{0}), record.value("sampling_error", 0.0),
                     seconds.value("simulate", 0.0), seconds.value("acquire", 0.0)};
 }

@@ -25,6 +25,19 @@ bool holds(const std::vector<Named>& list, const std::string& name) {
   return std::any_of(list.begin(), list.end(), [&](const Named& n) { return n.name == name; });
 }
 
+// A study makes its figure small: those that are best when large, at 1, or at what the body has,
+// would lead it astray.
+std::string read_error(JsonReader& reader) {
+  const std::string name = read_figure(reader, "error", FigureSource::surface_or_run);
+  const bool large_is_good =
+      name == "f_score" || name == "ray_hit_fraction" || name.ends_with("_within_95");
+  if (large_is_good)
+    reader.fail("error", "'" + name + "' is better the larger it is; a study wants an error");
+  if (name.starts_with("normalised_") || name == "genus" || name == "components")
+    reader.fail("error", "'" + name + "' is not better the smaller it is; a study wants an error");
+  return name;
+}
+
 Variation read_field(JsonReader& reader) {
   Variation variation{.name = reader.text("key"), .choices = {}};
   const nlohmann::json& values = reader.value("values");
@@ -101,7 +114,7 @@ Study read_study(JsonReader reader) {
   study.seeds = static_cast<int>(reader.integer("seeds", study.seeds));
   if (study.seeds < 1 || study.seeds > 1000)
     reader.fail("seeds", "is " + std::to_string(study.seeds) + ", must be 1 to 1000");
-  if (reader.has("error")) study.error = read_figure(reader, "error", FigureSource::surface_or_run);
+  if (reader.has("error")) study.error = read_error(reader);
   study.seconds = reader.text("seconds", study.seconds);
   const std::vector<std::string>& stages = timed_stages();
   if (std::find(stages.begin(), stages.end(), study.seconds) == stages.end())

@@ -189,7 +189,7 @@ RunOutcome StudyRuns::run(const std::string& name, const StudyRecipe& study_reci
   try {
     do_stages(run, recipe, spared, console, outcome.stages);
     const Verdict verdict = verify_run(run, console);
-    outcome.error = figure_of(verdict, figure).value;
+    outcome.error = std::abs(figure_of(verdict, figure).value);  // a bias may be below 0
     outcome.unit = figure_of(verdict, figure).unit;
   } catch (const Error& error) {
     if (error.trouble() == Trouble::input || error.trouble() == Trouble::output) throw;

@@ -6,6 +6,7 @@
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
+#include "libscan/verify/definitions.h"
 #include "tools/commands.h"
 #include "tools/report/tradeoff_page.h"
 #include "tools/study_work.h"
@@ -20,12 +21,13 @@ using nlohmann::ordered_json;
 struct Arguments {
   std::string recipe, out;
   std::string search = "grid";
-  double tolerance = 0;
+  std::string tolerance;
   bool resume = false, force = false;
 };
 
 void open_study(const Arguments& arguments) {
   const fs::path out = arguments.out;
+  make_folder(out);
   if (fs::exists(out / "runs") && !arguments.resume && !arguments.force)
     throw Error(Trouble::output, arguments.out + ": holds an earlier study",
                 "--resume goes on with it, --force replaces it");
@@ -35,7 +37,26 @@ void open_study(const Arguments& arguments) {
     fs::remove(out / file);
 }
 
-CaseResult search_case(StudyWork& work, const Case& in, const Arguments& arguments) {
+// In the unit of the study's figure; 0 for no text.
+double tolerance_of(const std::string& text, const std::string& figure) {
+  const std::string option = "--tolerance";
+  if (text.empty()) return 0;
+  const std::string unit = figure_definition(figure).value().unit;
+  double value = 0;
+  try {
+    value = unit == "m"     ? parse_length_m(text, option)
+            : unit == "rad" ? parse_angle_rad(text, option)
+                            : parse_number(text, option);
+  } catch (const Error& error) {
+    throw Error(Trouble::usage, error.what() + ("; this study's error is " + figure));
+  }
+  if (!(value > 0))
+    throw Error(Trouble::usage, option + ": is " + text + ", no run is as good as that");
+  return value;
+}
+
+CaseResult search_case(StudyWork& work, const Case& in, const Arguments& arguments,
+                       double tolerance) {
   const std::size_t before = work.runs_done();
   const Measure measure = [&](const Setting& setting, int seeds) {
     return work.measure(in, setting, seeds);
@@ -43,25 +64,26 @@ CaseResult search_case(StudyWork& work, const Case& in, const Arguments& argumen
   CaseResult result{.name = in.name,
                     .points = arguments.search == "grid"
                                   ? search_grid(work.study(), measure)
-                                  : search_adaptively(work.study(), arguments.tolerance, measure),
+                                  : search_adaptively(work.study(), tolerance, measure),
                     .chosen = {},
                     .sources = {},
                     .runs = work.runs_done() - before};
-  result.chosen = advised(result.points, arguments.tolerance);
+  result.chosen = advised(result.points, tolerance);
   if (result.chosen) result.sources = work.sources(in, result.points[*result.chosen].setting);
   return result;
 }
 
 int tradeoff(const Arguments& arguments, Console& console) {
-  open_study(arguments);
   StudyWork work(arguments.recipe, arguments.out, console);
+  const double tolerance = tolerance_of(arguments.tolerance, work.study().error);
+  open_study(arguments);
   StudyResult result{.study = work.study(),
                      .cases = {},
-                     .tolerance = arguments.tolerance,
+                     .tolerance = tolerance,
                      .search = arguments.search,
                      .runs_of_grid = work.runs_of_grid() / work.study().cases.size()};
   for (const Case& in : work.study().cases)
-    result.cases.push_back(search_case(work, in, arguments));
+    result.cases.push_back(search_case(work, in, arguments, tolerance));
   const ordered_json json = tradeoff_json(result);
   const fs::path out = arguments.out;
   write_json(out / "tradeoff.json", json);
@@ -85,8 +107,9 @@ Action tradeoff_command(CommandLine& line) {
   auto arguments = std::make_shared<Arguments>();
   line.input("RECIPE", arguments->recipe, "an experiment (JSON) with a \"tradeoff\"");
   line.input("OUT", arguments->out, "the folder to write into");
-  line.length("--tolerance", arguments->tolerance,
-              "advise the cheapest settings whose error is within this");
+  line.option("--tolerance", arguments->tolerance,
+              "advise the cheapest settings whose error is within this: 0.3mm, 0.1deg, or a bare "
+              "number for shares and counts (of lengths metres, of angles radians)");
   line.choice("--search", arguments->search, {"grid", "adaptive"},
               "try every setting, or only those on the way to the advice");
   line.flag("--resume", arguments->resume, "go on with an earlier study in OUT");

@@ -17,8 +17,10 @@
 #include "tools/artefact_stage.h"
 #include "tools/commands.h"
 #include "tools/inputs.h"
+#include "tools/left_out.h"
 #include "tools/report/picture.h"
 #include "tools/run_stages.h"
+#include "tools/verdict_text.h"
 #include "tools/verify_stage.h"
 
 namespace scan {
@@ -101,22 +103,24 @@ std::vector<Measurement> measure_disparity(const Arguments& arguments) {
   return measurements;
 }
 
-void require_area(const std::string& path, const Mesh& mesh) {
-  if (!(area_m2(mesh) > 0))
-    throw Error(Trouble::input, path + ": none of its triangles has an area");
+void refuse_emptied(const std::string& path) {
+  if (is_emptied_mesh(path))
+    throw Error(Trouble::input, path + ": is a mesh without a face (element face 0)",
+                "is it a cloud? `scan convert` writes its points without the empty element");
 }
 
 std::vector<Measurement> measure_files(const Arguments& arguments, Console& console) {
   if (is_disparity(arguments.measured)) return measure_disparity(arguments);
+  refuse_emptied(arguments.measured);
   const TrueSurface truth = read_true_surface(arguments.truth);
-  for (const Mesh& mesh : truth.meshes) require_area(arguments.truth, mesh);
+  for (const Mesh& mesh : truth.meshes) warn_of_flat_triangles(arguments.truth, mesh, console);
   warn_of_holes(arguments.truth, truth, console);
   const SurfaceErrorOptions options{.f_score_threshold_m = arguments.threshold_m};
   std::vector<Measurement> measurements;
   std::vector<Eigen::Vector3d> points;
   if (holds_triangles(arguments.measured)) {
     const SupportedMesh surface = read_supported_mesh(arguments.measured);
-    require_area(arguments.measured, surface.mesh);
+    warn_of_flat_triangles(arguments.measured, surface.mesh, console);
     measurements = surface_error(surface.mesh, truth, options);
     add(measurements, measure_shape(surface, truth));
     if (!arguments.picture.empty()) write_picture(arguments.picture, surface.mesh, truth);
@@ -125,6 +129,7 @@ std::vector<Measurement> measure_files(const Arguments& arguments, Console& cons
     if (!arguments.picture.empty())
       throw Error(Trouble::usage, "--picture: is for a mesh or a disparity");
     const Scan scan = read_scan(arguments.measured);
+    warn_of_lost_points(arguments.measured, scan, console);
     measurements = cloud_error(scan.cloud, truth, options);
     points = scan.cloud.points;
   }
@@ -178,11 +183,19 @@ void refuse_unused(const Arguments& arguments) {
 
 int verify(const Arguments& arguments, Console& console) {
   refuse_unused(arguments);
-  if (!arguments.picture.empty()) check_output(arguments.picture);
+  if (!arguments.picture.empty()) {
+    check_output(arguments.picture);
+    if (std::filesystem::path(arguments.picture).extension() != ".png")
+      throw Error(Trouble::output, "--picture: " + arguments.picture + ": must end in .png");
+  }
+  if (std::filesystem::is_directory(arguments.truth))
+    throw Error(Trouble::input, arguments.truth + ": is a folder, --truth must be a file",
+                "of a run it is truth/surface.json");
   if (arguments.artefacts) return verify_artefacts(arguments, console);
   const Stopwatch watch;
+  const bool is_run = std::filesystem::is_directory(arguments.measured);
   Verdict verdict;
-  if (std::filesystem::is_directory(arguments.measured)) {
+  if (is_run) {
     verdict = verify_run(arguments.measured, console);
   } else {
     if (!std::filesystem::exists(arguments.measured))
@@ -198,7 +211,8 @@ int verify(const Arguments& arguments, Console& console) {
     verdict = judge(measure_files(arguments, console), limits);
   }
   console.time("verify", watch.seconds());
-  const auto json = verdict_json(verdict);
+  ordered_json json = verdict_json(verdict);
+  if (is_run) tell_left_out(arguments.measured, json, console);
   say_verdict(json, console);
   console.finish("verify", verdict.pass ? "ok" : "failed", json);
   return verdict.pass ? 0 : 1;

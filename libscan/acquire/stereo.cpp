@@ -51,12 +51,7 @@ void check(const ImagePair& pair, const StereoOptions& options) {
                                       std::to_string(image->height) + " px, the calibration has " +
                                       std::to_string(c.width_px) + " x " +
                                       std::to_string(c.height_px));
-  require(options.block_px >= 1 && options.block_px % 2 == 1 && options.block_px <= 31, "block_px",
-          options.block_px, "odd, 1 to 31");
-  require(options.edge_margin_px >= 0 && options.edge_margin_px <= 100, "edge_margin_px",
-          options.edge_margin_px, "0 to 100");
-  require(options.max_left_right_px > 0, "max_left_right_px", options.max_left_right_px,
-          "positive");
+  check(options);
 }
 
 // Whether the block about a pixel changes along the row by more than rounding does: the variance of
@@ -116,6 +111,17 @@ void reject_depth_edges(int margin_px, decoding::RefinedDisparity& refined,
 }
 
 }  // namespace
+
+void check(const StereoOptions& options) {
+  require(options.block_px >= 1 && options.block_px % 2 == 1 && options.block_px <= 31, "block_px",
+          options.block_px, "odd, 1 to 31");
+  require(options.edge_margin_px >= 0 && options.edge_margin_px <= 100, "edge_margin_px",
+          options.edge_margin_px, "0 to 100");
+  require(options.max_left_right_px > 0, "max_left_right_px", options.max_left_right_px,
+          "positive");
+  require(options.disparity_sigma_px >= 0, "disparity_sigma_px", options.disparity_sigma_px,
+          "0 or more");
+}
 
 DisparityMap match(const ImagePair& pair, const StereoOptions& options) {
   check(pair, options);

@@ -17,6 +17,8 @@ struct StereoOptions {
   int edge_margin_px = 0;
   double disparity_sigma_px = 0;  // 0: estimated per pixel from texture and residual
 };
+// scan::Error (input) for a block that is even or beyond 31, and what is below its least.
+void check(const StereoOptions& options);
 
 // Semi-global matching, left-right check, then least squares on the images (see
 // disparity_refinement.h). Sub-pixel disparity of each left pixel, NaN where there is none (and

@@ -135,6 +135,10 @@ ordered_json surface_json(const SurfaceResult& result) {
 }
 
 ordered_json measurement_json(const Measurement& m) {
+  const auto ends = [](const std::optional<Interval>& interval) {
+    return interval ? ordered_json{number(interval->low), number(interval->high)}
+                    : ordered_json(nullptr);
+  };
   const auto if_limited = [&](const ordered_json& value) {
     return m.limit ? value : ordered_json(nullptr);
   };
@@ -148,8 +152,8 @@ ordered_json measurement_json(const Measurement& m) {
           {"relation", if_limited(m.relation)},
           {"pass", m.pass},
           {"reason", if_limited(m.reason)},
-          {"interval", m.interval ? ordered_json{number(m.interval->low), number(m.interval->high)}
-                                  : ordered_json(nullptr)}};
+          {"interval", ends(m.interval)},
+          {"expected", ends(m.expected)}};
 }
 
 ordered_json verdict_json(const Verdict& verdict) {

@@ -3,6 +3,7 @@
 #include "libscan/io/scan_file.h"
 
 #include <cmath>
+#include <optional>
 
 #include "libscan/core/error.h"
 #include "libscan/io/atomic_file.h"
@@ -108,6 +109,13 @@ TexturedMesh read_any_mesh(const std::filesystem::path& path) {
   refuse_ending(path, Trouble::input, ".ply .obj .stl .off .glb .gltf");
 }
 
+// None if its header does not speak of faces.
+std::optional<std::size_t> ply_faces(const std::filesystem::path& path) {
+  const PlyHeader header = parse_ply_header(read_file(path), path.string());
+  const PlyElement* face = header.empty.find("face");
+  return face ? std::optional<std::size_t>(face->count) : std::nullopt;
+}
+
 }  // namespace
 
 Scan read_scan(const std::filesystem::path& path) {
@@ -177,13 +185,13 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
 
 bool holds_triangles(const std::filesystem::path& path) {
   const std::string ending = ending_of(path);
-  if (ending == ".ply") {
-    const PlyHeader header = parse_ply_header(read_file(path), path.string());
-    const PlyElement* face = header.empty.find("face");
-    return face && face->count > 0;
-  }
-  if (ending == ".obj") return !parse_obj(read_file(path), path.string()).mesh.empty();
-  return ending == ".off" || ending == ".stl" || ending == ".glb" || ending == ".gltf";
+  if (ending == ".ply") return ply_faces(path).value_or(0) > 0;
+  return ending == ".obj" || ending == ".off" || ending == ".stl" || ending == ".glb" ||
+         ending == ".gltf";
+}
+
+bool is_emptied_mesh(const std::filesystem::path& path) {
+  return ending_of(path) == ".ply" && ply_faces(path) == 0u;
 }
 
 }  // namespace scan

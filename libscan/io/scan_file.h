@@ -35,7 +35,11 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 void check_scan_ending(const std::filesystem::path& path);
 void check_mesh_ending(const std::filesystem::path& path);
 
-// True if the file holds triangles (a mesh), false if points only.
+// True for a PLY with faces and for the formats of meshes alone, false for points.
 bool holds_triangles(const std::filesystem::path& path);
+
+// True for a PLY whose header speaks of faces and has none: a mesh that came out empty, whose
+// vertices are no cloud that someone measured.
+bool is_emptied_mesh(const std::filesystem::path& path);
 
 }  // namespace scan

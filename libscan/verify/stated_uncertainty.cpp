@@ -9,35 +9,43 @@
 #include <cmath>
 
 #include "libscan/core/error.h"
+#include "libscan/verify/chi_square.h"
 #include "libscan/verify/statistics.h"
 
 namespace scan {
 namespace {
 
-// The 0.95 quantile of chi-square.
-double chi_square_95(int degrees) {
-  if (degrees == 1) return 3.841458820694124;
-  if (degrees == 6) return 12.591587243743977;
-  throw Error(Trouble::usage,
-              "stated uncertainty: degrees is " + std::to_string(degrees) + ", must be 1 or 6");
+void check_degrees(int degrees) {
+  if (degrees != 1 && degrees != 6)
+    throw Error(Trouble::usage,
+                "stated uncertainty: degrees is " + std::to_string(degrees) + ", must be 1 or 6");
+}
+
+// Where the root of the mean of so many independent squares over their degrees lies with 95 %.
+Interval honest_root(std::size_t squares, int degrees) {
+  const double all = static_cast<double>(squares) * degrees;
+  return {std::sqrt(chi_square_quantile(0.025, all) / all),
+          std::sqrt(chi_square_quantile(0.975, all) / all)};
 }
 
 }  // namespace
 
 std::vector<Measurement> stated_uncertainty(const std::string& what, const NormalisedErrors& errors,
                                             const std::string& over) {
-  const double limit = chi_square_95(errors.degrees);
+  check_degrees(errors.degrees);
   if (errors.squares.empty()) return {};
+  const double limit = chi_square_quantile(0.95, errors.degrees);
   const auto inside = std::count_if(errors.squares.begin(), errors.squares.end(),
                                     [&](double square) { return square <= limit; });
   const auto figure = [&](const std::string& name, double value) {
     return Measurement{
         .name = name, .value = value, .unit = "1", .over = over, .count = errors.squares.size()};
   };
-  return {
-      figure("normalised_" + what + "_error_rms", std::sqrt(mean(errors.squares) / errors.degrees)),
-      figure(what + "_error_within_95",
-             static_cast<double>(inside) / static_cast<double>(errors.squares.size()))};
+  auto root =
+      figure("normalised_" + what + "_error_rms", std::sqrt(mean(errors.squares) / errors.degrees));
+  root.expected = honest_root(errors.squares.size(), errors.degrees);
+  return {root, figure(what + "_error_within_95",
+                       static_cast<double>(inside) / static_cast<double>(errors.squares.size()))};
 }
 
 std::optional<double> normalised_square(const Eigen::Vector3d& error_m,

@@ -24,9 +24,10 @@ struct NormalisedErrors {
 };
 
 // normalised_<what>_error_rms: root of the mean of the squares over their degrees; 1 is honest,
-// more is too proud. <what>_error_within_95: share of the errors inside their own 95 % interval
-// (for six degrees: ellipsoid). Nothing for no errors. Throws scan::Error (usage) for other
-// degrees.
+// more is too proud. Its `expected` is for honest errors that know nothing of each other; where
+// neighbours share theirs, as on a surface, honest figures leave it more often than 1 in 20 times.
+// <what>_error_within_95: share of the errors inside their own 95 % interval (for six degrees:
+// ellipsoid). Nothing for no errors. Throws scan::Error (usage) for other degrees.
 std::vector<Measurement> stated_uncertainty(const std::string& what, const NormalisedErrors& errors,
                                             const std::string& over);
 

@@ -21,16 +21,19 @@ std::string hint_for(const std::string& name, const std::vector<Measurement>& me
 bool holds(double value, const std::string& relation, double limit) {
   if (relation == "<=") return value <= limit;
   if (relation == ">=") return value >= limit;
+  if (relation == "within") return std::abs(value) <= limit;
   return value == limit;  // false for NaN, as are the others
 }
 
 void check(const Limit& limit) {
   const std::string& r = limit.relation;
-  if (r != "<=" && r != ">=" && r != "==")
-    throw Error(Trouble::input,
-                "limit '" + limit.name + "': relation is '" + r + "', must be '<=', '>=' or '=='");
+  if (r != "<=" && r != ">=" && r != "==" && r != "within")
+    throw Error(Trouble::input, "limit '" + limit.name + "': relation is '" + r +
+                                    "', must be '<=', '>=', '==' or 'within'");
   if (std::isnan(limit.value))
     throw Error(Trouble::input, "limit '" + limit.name + "': value is not a number");
+  if (r == "within" && limit.value < 0)
+    throw Error(Trouble::input, "limit '" + limit.name + "': nothing is within less than 0");
 }
 
 Measurement judged(Measurement measurement, const Limit& limit) {

@@ -27,9 +27,9 @@ TEST(JsonOutput, MeasurementsHaveTheirStableKeys) {
   measurement.name = "genus";
   measurement.value = 4;
   const ordered_json free = measurement_json(measurement);
-  EXPECT_EQ(keys_of(free),
-            (std::vector<std::string>{"name", "value", "unit", "definition", "over", "count",
-                                      "limit", "relation", "pass", "reason", "interval"}));
+  EXPECT_EQ(keys_of(free), (std::vector<std::string>{"name", "value", "unit", "definition", "over",
+                                                     "count", "limit", "relation", "pass", "reason",
+                                                     "interval", "expected"}));
   EXPECT_TRUE(free["limit"].is_null());
   EXPECT_TRUE(free["relation"].is_null());
   measurement.value = std::nan("");

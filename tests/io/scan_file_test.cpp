@@ -229,6 +229,8 @@ TEST(MeshFile, PointsAloneAreNoMesh) {
   write_scan(folder / "points.ply", full_scan());
   EXPECT_FALSE(holds_triangles(folder / "points.ply"));
   EXPECT_FALSE(holds_triangles(folder / "points.xyz"));
+  EXPECT_FALSE(is_emptied_mesh(folder / "points.ply"));
+  EXPECT_FALSE(is_emptied_mesh(folder / "points.xyz"));
   EXPECT_NE(error_of([&] { read_mesh(folder / "points.ply"); }).find("holds no triangle"),
             std::string::npos);
 }

@@ -112,6 +112,23 @@ TEST(BadInput, MissingFilesAndFoldersAreNamed) {
   EXPECT_TRUE(files_below(folder.path()).empty());
 }
 
+// `scan reconstruct a.ply b.ply` by someone who forgot the output must not cost b.ply.
+TEST(BadInput, AnOutputThatIsAnInputIsRefused) {
+  const Folder folder;
+  spill(folder / "a.ply", sphere_ply(500, 0));
+  const std::string a = (folder / "a.ply").string(), same = (folder / "./a.ply").string();
+  expect_failure(run_scan({"reconstruct", a, same}), usage, "is an input, too");
+  expect_failure(run_scan({"align", a, a}), usage, "is an input, too");
+  EXPECT_EQ(slurp(a), sphere_ply(500, 0));
+}
+
+TEST(BadInput, HelpIsACommandToo) {
+  const Outcome help = run_scan({"help", "align"});
+  EXPECT_EQ(help.exit_code, 0) << help.err;
+  EXPECT_EQ(help.out, run_scan({"align", "--help"}).out);
+  EXPECT_EQ(run_scan({"help"}).out, run_scan({"--help"}).out);
+}
+
 TEST(BadInput, NamesThatAreNoTextAreReportedTooInJson) {
   const Folder folder;
   const Outcome outcome = run_scan({"info", (folder / "bad\xff.ply").string(), "--json"});
@@ -123,7 +140,7 @@ TEST(BadInput, OnePointIsTooFew) {
   const Folder folder;
   const std::string one = (folder / "one.ply").string();
   spill(one, ply_header("1") + "0 0 0\n");
-  expect_failure(run_scan({"reconstruct", one, (folder / "out.ply").string()}), input, "point");
+  expect_failure(run_scan({"reconstruct", one, (folder / "out.ply").string()}), input, "one.ply: ");
   expect_failure(run_scan({"align", one, one, (folder / "aligned").string()}), computation,
                  "alignment.json");
   EXPECT_FALSE(std::filesystem::exists(folder / "out.ply"));

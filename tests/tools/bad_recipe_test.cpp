@@ -4,7 +4,7 @@
 // made.
 #include <gtest/gtest.h>
 
-#include "tests/tools/program.h"
+#include "tests/tools/small_run.h"
 
 namespace scan::test {
 namespace {
@@ -112,6 +112,43 @@ INSTANTIATE_TEST_SUITE_P(
         Slip{"\"libscan\": 1", "\"libscan\": 2", "version 1"},
         Slip{"\"libscan\": 1,", "\"libscan\": 1", "not valid JSON"}));
 
+// What a stage would refuse after minutes, or take for something else.
+INSTANTIATE_TEST_SUITE_P(
+    Settings, BadRecipe,
+    testing::Values(
+        Slip{"\"libscan\": 1,", "\"libscan\": 1, \"acquire\": { \"stereo\": { \"block_px\": 4 } },",
+             "block_px: 4"},
+        Slip{"\"libscan\": 1,",
+             "\"libscan\": 1, \"acquire\": { \"stereo\": { \"disparity_sigma_px\": -1 } },",
+             "disparity_sigma_px: -1"},
+        Slip{"\"libscan\": 1,",
+             "\"libscan\": 1, \"acquire\": { \"normals\": { \"neighbours\": 2 } },",
+             "acquire/normals/neighbours is 2, must be 3 or more"},
+        Slip{"\"libscan\": 1,",
+             "\"libscan\": 1, \"acquire\": { \"laser_line\": { \"threshold_sigmas\": -1 } },",
+             "laser_line/threshold_sigmas is -1"},
+        Slip{"\"libscan\": 1,",
+             "\"libscan\": 1, \"acquire\": { \"phase\": { \"min_amplitude_sigmas\": -1 } },",
+             "min_amplitude_sigmas is -1"},
+        Slip{"\"libscan\": 1,", "\"libscan\": 1, \"align\": { \"max_rounds\": 0 },",
+             "max_rounds: 0"},
+        Slip{"\"libscan\": 1,", "\"libscan\": 1, \"align\": { \"thin_mm\": -1 },",
+             "thin_m: -0.001"},
+        Slip{"\"libscan\": 1,", "\"libscan\": 1, \"verify\": { \"samples\": 0 },",
+             "verify/samples is 0, must be 1 or more"},
+        Slip{"\"libscan\": 1,", "\"libscan\": 1, \"verify\": { \"samples\": -5 },",
+             "verify/samples is -5"},
+        Slip{"\"libscan\": 1,", "\"libscan\": 1, \"verify\": { \"seen_distance_mm\": -1 },",
+             "verify/seen_distance_m is -0.001"},
+        Slip{"\"libscan\": 1,", "\"libscan\": 1, \"verify\": { \"f_score_threshold_mm\": -1 },",
+             "f_score_threshold_m is -0.001"},
+        Slip{"\"depth\": 4 }", "\"depth\": 4, \"thin_mm\": -1 }", "reconstruct/thin_m is -0.001"},
+        Slip{"\"depth\": 4 }", "\"depth\": 4, \"trim_mm\": -1 }", "reconstruct/trim_m is -0.001"},
+        Slip{"\"depth\": 4 }", "\"depth\": 4, \"decimate_mm\": -1 }",
+             "reconstruct/decimate_m is -0.001"},
+        Slip{"\"depth\": 4 }", "\"depth\": 4, \"max_sigma_mm\": -1 }",
+             "reconstruct/max_sigma_m is -0.001"}));
+
 TEST(GoodRecipe, RunsAndRefusesToOverwrite) {
   const Folder folder;
   spill(folder / "recipe.json", good_recipe);
@@ -125,6 +162,33 @@ TEST(GoodRecipe, RunsAndRefusesToOverwrite) {
   EXPECT_EQ(files_below(run), files);
   EXPECT_EQ(run_scan({"run", recipe, run, "--resume"}).exit_code, 0);
   EXPECT_EQ(run_scan({"run", recipe, run, "--force"}).exit_code, 0);
+}
+
+// A run that was cut short goes on, or says which file it cannot go on from.
+TEST(ResumedRun, MakesCutScansAnewAndNamesWhatIsBroken) {
+  const Folder folder;
+  std::filesystem::copy(small_run(), folder / "run", std::filesystem::copy_options::recursive);
+  const std::string recipe = LIBSCAN_SOURCE_DIR "/tests/tools/small_run.json",
+                    run = (folder / "run").string();
+  const std::string scan = slurp(folder / "run/scans/003.ply");
+  spill(folder / "run/scans/003.ply", scan.substr(0, scan.size() / 2));
+  EXPECT_EQ(run_scan({"run", recipe, run, "--resume"}).exit_code, 0);
+  EXPECT_EQ(slurp(folder / "run/scans/003.ply"), scan);
+  spill(folder / "run/timings.json", "[1, 2");
+  const Outcome timings = run_scan({"run", recipe, run, "--resume"});
+  EXPECT_EQ(timings.exit_code, 3) << timings.err;
+  EXPECT_NE(timings.err.find("run/timings.json: not valid JSON"), std::string::npos);
+
+  const std::string as_run = slurp(folder / "run/recipe.json");
+  spill(folder / "run/recipe.json", as_run.substr(0, as_run.size() / 2));
+  const Outcome broken = run_scan({"run", recipe, run, "--resume"});
+  EXPECT_EQ(broken.exit_code, 3);
+  EXPECT_NE(broken.err.find("run/recipe.json: not valid JSON near line"), std::string::npos)
+      << broken.err;
+  EXPECT_EQ(broken.err.find("another recipe"), std::string::npos) << broken.err;
+  spill(folder / "run/recipe.json", "{}");
+  EXPECT_NE(run_scan({"run", recipe, run, "--resume"}).err.find("another recipe"),
+            std::string::npos);
 }
 
 }  // namespace

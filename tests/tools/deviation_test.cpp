@@ -62,5 +62,11 @@ TEST(WorstPlaces, AreTheLargestThatLieApart) {
   EXPECT_EQ(worst_places(mesh, deviations, 3, 0.5), (std::vector<std::uint32_t>{1, 2, 4}));
 }
 
+TEST(WorstPlaces, MayLieAsFarApartAsAsked) {
+  const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {1.5, 0, 0}}, {}};
+  const std::vector<double> deviations_m{3, 2, 1};
+  EXPECT_EQ(worst_places(mesh, deviations_m, 3, 1), (std::vector<std::uint32_t>{0, 1}));
+}
+
 }  // namespace
 }  // namespace scan

@@ -123,6 +123,11 @@ TEST(Thinned, KeepsTheWorstAndAnEvenChoice) {
   for (std::size_t k = 1; k < chosen.size(); ++k) EXPECT_LE(chosen[k] - chosen[k - 1], 12u);
 }
 
+TEST(Thinned, KeepsNoMoreOfTheWorstThanAreAskedForInAll) {
+  const std::vector<double> weights{1, 5, 2, 4, 3};
+  EXPECT_EQ(thinned(5, weights, 2, 4), (std::vector<std::uint32_t>{1, 3}));
+}
+
 TEST(Thinned, LeavesFewAsTheyAre) {
   EXPECT_EQ(thinned(4, {}, 10, 2), (std::vector<std::uint32_t>{0, 1, 2, 3}));
 }

@@ -5,41 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/small_run.h"
+#include "tests/tools/report_of.h"
 
 namespace scan::test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::ordered_json;
-
 constexpr int input = 3, usage = 2;
-
-struct Written {
-  Outcome outcome;
-  std::string page, csv;
-  ordered_json twin;
-};
-
-Written report_of(const fs::path& run, const Folder& folder,
-                  const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = {"report", run.string(), (folder / "out.html").string()};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  Written written{run_scan(arguments), slurp(folder / "out.html"), slurp(folder / "out.csv"), {}};
-  if (fs::exists(folder / "out.json"))
-    written.twin = ordered_json::parse(slurp(folder / "out.json"));
-  return written;
-}
-
-// The small run, to be broken.
-fs::path copy_of_run(const Folder& folder) {
-  fs::copy(small_run(), folder / "run", fs::copy_options::recursive);
-  return folder / "run";
-}
-
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 std::string without_scripts(std::string page) {
   for (auto at = page.find("<script"); at != std::string::npos; at = page.find("<script", at))
@@ -234,32 +205,6 @@ TEST(Report, RefusesThePageItsTwinsNames) {
   const Outcome outcome =
       run_scan({"report", small_run().string(), (small_run() / "x.json").string()});
   EXPECT_EQ(outcome.exit_code, usage);
-}
-
-TEST(Report, TakesADataSheetAndAStudy) {
-  const Folder folder;
-  spill(folder / "sheet.json",
-        R"({ "pass": true, "measurements": [ { "name": "probing_form", "value": 1.25e-5,
-             "unit": "m", "over": "10 balls", "count": 10, "limit": null, "pass": true,
-             "predicted": 1.5e-5 } ] })");
-  spill(folder / "study.json",
-        R"({ "figure": "accuracy_rms", "unit": "m", "tolerance": 0.001, "machine": "a machine",
-             "threads": 2, "seconds": "all",
-             "cases": [ { "name": "", "sources": [],
-                          "advice": { "text": "Take this.", "meets": true } } ],
-             "runs": [ { "case": "", "settings": { "reconstruct/depth": 5 }, "error_m": 0.0005,
-               "least_error": 0.0004, "most_error": 0.0006, "count": 2, "seconds": 1.5,
-               "stages": { "align": { "seconds": 1.5, "peak_mib": 100 } }, "trouble": "",
-               "on_front": true } ] })");
-  const Written report = report_of(small_run(), folder,
-                                   {"--artefacts", (folder / "sheet.json").string(), "--tradeoff",
-                                    (folder / "study.json").string()});
-  ASSERT_EQ(report.outcome.exit_code, 0) << report.outcome.err;
-  EXPECT_TRUE(holds(report.page, "<data value=\"1.25e-05\">12.5 µm</data>"));
-  EXPECT_TRUE(holds(report.page, "<data value=\"1.5e-05\">15 µm</data>"));
-  EXPECT_TRUE(holds(report.csv, "artefacts,probing_form,1.25e-05,m"));
-  EXPECT_TRUE(holds(report.page, "Take this."));
-  EXPECT_TRUE(holds(report.page, "<section id=\"tradeoff\""));
 }
 
 }  // namespace

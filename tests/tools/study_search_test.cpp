@@ -30,6 +30,15 @@ TEST(Front, HoldsWhatNothingBeatsInBoth) {
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(points[i].on_front, wanted[i]) << i;
 }
 
+// Of equal errors the quicker is on the front, of equal seconds the more accurate, and of twins
+// both.
+TEST(Front, HoldsNoEqualThatCostsMore) {
+  std::vector<StudyPoint> points = {point(1, 1), point(1, 2), point(2, 1), point(1, 1)};
+  mark_front(points);
+  const std::vector<bool> wanted = {true, false, false, true};
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(points[i].on_front, wanted[i]) << i;
+}
+
 TEST(Advice, IsTheCheapestWithinTheToleranceOrTheBest) {
   const std::vector<StudyPoint> points = {point(3, 1), point(2, 2), point(1.9, 3),
                                           point(failed, 0)};

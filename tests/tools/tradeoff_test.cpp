@@ -3,6 +3,7 @@
 // `scan tradeoff` as a user runs it: advice, files, a second call, and slips in its recipe.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
@@ -10,7 +11,7 @@
 namespace scan::test {
 namespace {
 
-constexpr int failed = 1, input = 3, computation = 4, output = 5;
+constexpr int failed = 1, usage = 2, input = 3, computation = 4, output = 5;
 
 // Six small phase scans of a lump; only the surface's depth is varied.
 std::string recipe(const std::string& vary) {
@@ -124,6 +125,59 @@ TEST(Tradeoff, NamesOnlySourcesThatAFigureCanHave) {
   EXPECT_EQ(sources("range_error_rms"), "noise;decoding;");
 }
 
+std::string study_of(const std::string& figure) {
+  return R"({"vary": [{"key": "reconstruct/depth", "values": [3]}], "seeds": 1, "error": ")" +
+         figure + "\"}";
+}
+
+// A tolerance has the unit of the study's figure; of another one it is refused before a run.
+TEST(Tradeoff, TakesItsToleranceInTheFiguresUnit) {
+  const Folder folder;
+  const struct {
+    const char *figure, *tolerance;
+    double value;  // below 0: refused
+  } cases[] = {{"rotation_error_mean", "3deg", 0.0523598775598298873},
+               {"rotation_error_mean", "0.3mm", -1},
+               {"unsupported_area", "0.5", 0.5},
+               {"unsupported_area", "3mm", -1},
+               {"accuracy_mean", "3deg", -1},
+               {"accuracy_mean", "0mm", -1}};
+  for (const auto& one : cases) {
+    SCOPED_TRACE(std::string(one.figure) + " " + one.tolerance);
+    std::filesystem::remove_all(folder / "out");
+    const Outcome outcome = tradeoff(folder, study_of(one.figure), {"--tolerance", one.tolerance});
+    if (one.value < 0) {
+      EXPECT_EQ(outcome.exit_code, usage);
+      EXPECT_NE(outcome.err.find("--tolerance"), std::string::npos) << outcome.err;
+      EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+      continue;
+    }
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_DOUBLE_EQ(json.at("tolerance"), one.value);
+    EXPECT_TRUE(json.at("advice").at("meets"));
+  }
+}
+
+// Figures that are best when large, or at 1, would be made worst; of a bias its size counts.
+TEST(Tradeoff, WantsAFigureThatIsAnError) {
+  const Folder folder;
+  for (const char* figure : {"f_score", "ray_hit_fraction", "range_error_within_95",
+                             "normalised_range_error_rms", "genus", "components"}) {
+    const Outcome outcome = tradeoff(folder, study_of(figure));
+    EXPECT_EQ(outcome.exit_code, input) << figure;
+    EXPECT_NE(outcome.err.find("a study wants an error"), std::string::npos) << outcome.err;
+  }
+  const Outcome bias = tradeoff(folder, study_of("range_error_bias"));
+  ASSERT_EQ(bias.exit_code, 0) << bias.err;
+  const double kept = nlohmann::json::parse(bias.out).at("runs")[0].at("error_m");
+  const auto verdict = nlohmann::json::parse(slurp(folder / "out/runs/0-seed0/verdict.json"));
+  for (const auto& m : verdict.at("measurements"))
+    if (m.at("name") == "range_error_bias") {
+      EXPECT_DOUBLE_EQ(kept, std::abs(m.at("value").get<double>()));
+    }
+}
+
 // Before the first run, and without leaving a folder that asks for --resume.
 TEST(Tradeoff, NamesAMistakeInItsLastChoiceAtOnce) {
   const Folder folder;
@@ -152,6 +206,14 @@ TEST(Tradeoff, NamesWhatIsWrongWithItsRecipe) {
             std::string::npos);
   EXPECT_NE(said(R"({"vary": [{"key": "threads", "values": [1, 100000]}]})").find("100000"),
             std::string::npos);
+}
+
+TEST(Tradeoff, WantsAFolderToWriteInto) {
+  const Folder folder;
+  spill(folder / "out", "a file");
+  const Outcome outcome = tradeoff(folder, depths);
+  EXPECT_EQ(outcome.exit_code, output) << outcome.err;
+  EXPECT_NE(outcome.err.find("is a file, a folder is needed"), std::string::npos) << outcome.err;
 }
 
 // A scanner that sees nothing within its range: each run fails, and the first reason is given.

@@ -6,55 +6,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/tools/judged_cube.h"
 #include "tests/tools/small_run.h"
 
 namespace scan::test {
 namespace {
 
-constexpr int failed = 1, usage = 2, input = 3;
-
-// A cube of the given edge with a corner at (x, 0, 0); `extra` are further lines of faces.
-std::string cube_off(double edge, double x, const std::string& extra = "", int extra_faces = 0) {
-  std::string text = "OFF\n8 " + std::to_string(12 + extra_faces) + " 0\n";
-  for (int corner = 0; corner < 8; ++corner) {
-    char line[96];
-    std::snprintf(line, sizeof line, "%.17g %.17g %.17g\n", x + edge * (corner & 1),
-                  edge * (corner >> 1 & 1), edge * (corner >> 2 & 1));
-    text += line;
-  }
-  for (const char* face : {"0 2 3", "0 3 1", "4 5 7", "4 7 6", "0 1 5", "0 5 4", "2 6 7", "2 7 3",
-                           "0 4 6", "0 6 2", "1 3 7", "1 7 5"})
-    text += std::string("3 ") + face + "\n";
-  return text + extra;
-}
-
-struct Judged {
-  Outcome outcome;
-  nlohmann::json json;
-  double figure(const std::string& name) const {
-    for (const auto& m : json.at("measurements"))
-      if (m.at("name") == name) return m.at("value").get<double>();
-    throw std::runtime_error(name + " was not measured");
-  }
-};
-
-Judged judged(const Folder& folder, const std::string& measured,
-              const std::vector<std::string>& more = {}) {
-  spill(folder / "measured.off", measured);
-  spill(folder / "truth.off", cube_off(1, 0));
-  std::vector<std::string> arguments{
-      "verify", (folder / "measured.off").string(), "--truth", (folder / "truth.off").string(),
-      "--json",
-  };
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  Judged result{run_scan(arguments), {}};
-  if (!result.outcome.out.empty()) result.json = nlohmann::json::parse(result.outcome.out);
-  return result;
-}
-
-bool says(const Outcome& outcome, const std::string& words) {
-  return outcome.err.find(words) != std::string::npos;
-}
+constexpr int failed = 1, input = 3;
 
 TEST(VerifyInput, AGrownCubeHasItsClosedFormFigures) {
   const Folder folder;
@@ -241,30 +199,6 @@ TEST(VerifyInput, WithoutLimitsThereIsNoVerdict) {
   const Outcome judged =
       run_scan({"verify", truth, "--truth", truth, "--limits", (folder / "limits.json").string()});
   EXPECT_NE(judged.out.find("PASS"), std::string::npos) << judged.out;
-}
-
-// What a recipe says is not said a second time, and a cloud has no picture.
-TEST(VerifyInput, OptionsThatWouldBePassedOverAreRefused) {
-  const Folder folder;
-  std::filesystem::create_directory(folder / "run");
-  spill(folder / "truth.off", cube_off(1, 0));
-  spill(folder / "cloud.xyz", "0 0 0\n1 0 0\n");
-  const std::string run = (folder / "run").string(), truth = (folder / "truth.off").string(),
-                    cloud = (folder / "cloud.xyz").string();
-  const std::vector<std::vector<std::string>> unused = {
-      {run, "--limits", "limits.json"},
-      {run, "--truth", truth},
-      {run, "--threshold", "1mm"},
-      {run, "--picture", "p.png"},
-      {truth, "--truth", truth, "--doffs", "3"},
-      {cloud, "--truth", truth, "--picture", "p.png"}};
-  for (std::vector<std::string> words : unused) {
-    const std::string option = words[words.size() - 2];
-    words.insert(words.begin(), "verify");
-    const Outcome outcome = run_scan(words);
-    EXPECT_EQ(outcome.exit_code, usage) << option << outcome.err;
-    EXPECT_TRUE(says(outcome, option)) << outcome.err;
-  }
 }
 
 TEST(VerifyInput, ALimitOnWhatWasNotMeasuredIsAnError) {

@@ -183,5 +183,36 @@ TEST(Artefacts, RefuseNothing) {
   EXPECT_THROW(form_of({}), Error);
 }
 
+// 19 of 20 residuals: all but the lowest, which is the last window of the list.
+TEST(Artefacts, TheNarrowestWidthMayBeTheLast) {
+  std::vector<double> residuals_m{-100};
+  for (int i = 1; i <= 19; ++i) residuals_m.push_back(i);
+  EXPECT_EQ(form_of(residuals_m).width_95_m, 18);
+  residuals_m.front() = 200;
+  EXPECT_EQ(form_of(residuals_m).width_95_m, 18);
+}
+
+// Two balls, one of them 20 um too far: neighbours in the list are a pair.
+TEST(Artefacts, LengthErrorIsThatOfNeighboursToo) {
+  const Eigen::Vector3d a(0, 0, 1), b(0.5, 0, 1);
+  const std::vector<PlacedBall> balls{{ideal_ball(a, 0.015), a},
+                                      {ideal_ball(Eigen::Vector3d(b.x() + 2e-5, 0, 1), 0.015), b}};
+  EXPECT_NEAR(figure(length_errors(balls), "length_error"), 2e-5, 1e-12);
+}
+
+// Tilted by 60 degrees and 10 um too far along the sight: its plane is off by half of that.
+TEST(Artefacts, RelativeRangeErrorGoesAlongTheSight) {
+  const Eigen::Matrix3d tilt =
+      Eigen::AngleAxisd(std::numbers::pi / 3, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const auto tilted = [&](double range_m, double error_m) {
+    PlacedPlate placed{plate(0), {0, 0, range_m}};
+    for (auto& x : placed.points) x = tilt * x + Eigen::Vector3d(0, 0, range_m + error_m);
+    return placed;
+  };
+  const std::vector<PlacedPlate> plates{tilted(1, 0), tilted(2, 1e-5)};
+  EXPECT_NEAR(figure(relative_range_errors(plates, {0, 0, 1}), "relative_range_error"), 1e-5,
+              1e-12);
+}
+
 }  // namespace
 }  // namespace scan

@@ -51,6 +51,13 @@ TEST(DisparityError, OfNoMatchAtAllIsAllBad) {
   EXPECT_TRUE(std::isnan(figure(figures, "disparity_bad_2px")));
 }
 
+TEST(DisparityError, OfAPointAtInfinityHasNoDepth) {
+  const auto at_infinity = disparity_error(image({-10}), image({-10}), 10);
+  EXPECT_TRUE(std::isinf(figure(at_infinity, "relative_depth_error_median")));
+  const auto behind = disparity_error(image({-11}), image({3}), 10);
+  EXPECT_TRUE(std::isinf(figure(behind, "relative_depth_error_median")));
+}
+
 TEST(DisparityError, TreatsInfinityAsUnknown) {
   const float infinity = std::numeric_limits<float>::infinity();
   const auto figures = disparity_error(image({3, 4}), image({3, infinity}), 0);

@@ -212,5 +212,28 @@ TEST(RelativePoseErrors, OfASingleScanAreNone) {
   EXPECT_TRUE(summarise_relative({}).empty());
 }
 
+// Of a hundred targets one lies far off, where a turn is felt most: the largest is its chord.
+TEST(TargetRegistrationError, KnowsTheFarthestOfManyTargets) {
+  Vector6 turn = Vector6::Zero();
+  turn(2) = 0.2;
+  const std::vector<Pose> truth(2, Pose::Identity()), estimated{Pose::Identity(), exp(turn)};
+  const std::vector<Points> points(2, octahedron());
+  Points targets(99, Eigen::Vector3d(0, 0, 1));
+  targets.push_back({3, 0, 7});
+  EXPECT_NEAR(figure(target_registration_error(estimated, truth, points, targets),
+                     "target_registration_error_max"),
+              6 * std::sin(0.05), 1e-13);
+}
+
+// A strip of 1 m by 2 cm fixes all rotations: its singular values are as 1 to 4e-4.
+TEST(Gauge, IsFixedByANarrowStrip) {
+  const Points strip{{-0.5, -0.01, 2}, {0.5, -0.01, 2}, {0.5, 0.01, 2}, {-0.5, 0.01, 2}};
+  RandomStream random(6, 0, 0);
+  const Pose world = random_pose(random, 1, 2);
+  const std::vector<Pose> truth{Pose::Identity()}, estimated{world};
+  const Pose fixed = gauge(estimated, truth, std::vector<Points>{strip});
+  EXPECT_TRUE(fixed.isApprox(world.inverse(), 1e-12));
+}
+
 }  // namespace
 }  // namespace scan

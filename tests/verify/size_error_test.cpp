@@ -77,6 +77,14 @@ TEST(SizeError, LeavesOutWhatIsNotDefined) {
   EXPECT_EQ(size_error(cube(1), {{}, {open}}).size(), 1u);
   EXPECT_TRUE(size_error(cube(1), {{}, {open, open}}).empty());
   EXPECT_TRUE(size_error(cube(1), {{{Pose::Identity(), PlaneShape{}}}, {}}).empty());
+  Mesh touching = cube(1);  // two cubes that share the corner at the origin: closed, no manifold
+  for (const Triangle& t : cube(1).triangles) {
+    const auto other = [](std::uint32_t v) { return v == 0 ? 0 : v + 7; };
+    touching.triangles.push_back({other(t[0]), other(t[2]), other(t[1])});
+  }
+  ASSERT_TRUE(cube(1).vertices[0].isZero());
+  for (std::size_t v = 1; v < 8; ++v) touching.vertices.push_back(-cube(1).vertices[v]);
+  EXPECT_EQ(size_error(touching, {{}, {cube(1)}}).size(), 1u);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "libscan/core/error.h"
 #include "libscan/core/random.h"
+#include "libscan/verify/chi_square.h"
 #include "tests/verify/figure.h"
 
 namespace scan {
@@ -40,6 +41,41 @@ TEST(StatedUncertainty, CountsByHand) {
               1e-15);
   EXPECT_TRUE(stated_uncertainty("range", {}, "").empty());
   EXPECT_THROW(stated_uncertainty("range", {.squares = {1}, .degrees = 3}, ""), Error);
+}
+
+// By hand: roots of the quantiles of 2 and of 12 degrees over these.
+TEST(StatedUncertainty, KnowsWhereHonestFiguresLie) {
+  const auto two = measurement(stated_uncertainty("range", {.squares = {1, 9}}, ""),
+                               "normalised_range_error_rms");
+  ASSERT_TRUE(two.expected.has_value());
+  EXPECT_NEAR(two.expected->low, std::sqrt(-std::log(0.975)), 1e-12);
+  EXPECT_NEAR(two.expected->high, std::sqrt(-std::log(0.025)), 1e-12);
+  const auto poses = measurement(stated_uncertainty("pose", {.squares = {1, 9}, .degrees = 6}, ""),
+                                 "normalised_pose_error_rms");
+  EXPECT_NEAR(poses.expected->low, std::sqrt(4.40379 / 12), 1e-6);
+  EXPECT_NEAR(poses.expected->high, std::sqrt(23.3367 / 12), 1e-5);
+  EXPECT_FALSE(measurement(stated_uncertainty("pose", {.squares = {1}, .degrees = 6}, ""),
+                           "pose_error_within_95")
+                   .expected.has_value());
+}
+
+TEST(StatedUncertainty, TheIntervalHoldsItsEnd) {
+  const NormalisedErrors errors{.squares = {chi_square_quantile(0.95, 1)}};
+  EXPECT_EQ(figure(stated_uncertainty("range", errors, ""), "range_error_within_95"), 1);
+}
+
+// 1 in 20 of honest figures lies beyond; five standard deviations of 1000 of them.
+TEST(StatedUncertainty, ExpectsOfHonestErrorsWhatTheyGive) {
+  int inside = 0;
+  for (std::uint32_t trial = 0; trial < 1000; ++trial) {
+    NormalisedErrors errors;
+    RandomStream random(3, trial, 0);
+    for (int i = 0; i < 40; ++i) errors.squares.push_back(std::pow(random.normal(), 2));
+    const auto root =
+        measurement(stated_uncertainty("range", errors, ""), "normalised_range_error_rms");
+    inside += root.expected->low <= root.value && root.value <= root.expected->high;
+  }
+  EXPECT_NEAR(inside, 950, 5 * std::sqrt(1000 * 0.95 * 0.05));
 }
 
 // A point that errs along a known line, whatever that line: here the light plane's, not the ray's.
@@ -88,6 +124,8 @@ TEST(StatedUncertainty, OfPosesIsHonestRelativeToTheAnchor) {
     stated.push_back(StatedPose{stated_covariance(), centre.translation()});
   }
   expect_honest(normalised_pose_errors(estimated, truth, stated, 0), "pose");
+  stated[0] = stated[1];  // what the anchor says of itself does not count
+  EXPECT_EQ(normalised_pose_errors(estimated, truth, stated, 0).squares.size(), count);
   stated[1].reset();
   EXPECT_EQ(normalised_pose_errors(estimated, truth, stated, 0).squares.size(), count - 1);
   EXPECT_THROW(normalised_pose_errors(estimated, truth, stated, count + 1), Error);

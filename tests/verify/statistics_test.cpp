@@ -81,5 +81,37 @@ TEST(Statistics, OfNothingOrOfNaNIsNaN) {
   EXPECT_TRUE(std::isnan(quantile(values, 1)));
 }
 
+TEST(Statistics, TheLeastIsTheQuantileOfNothing) {
+  const std::vector<double> values{3, 1, 2};
+  EXPECT_EQ(quantile(values, 0), 1);
+  EXPECT_EQ(quantile(values, 1.0 / 3), 1);
+}
+
+// 0 and 2: their mean has the standard error sqrt((1 + 1) / (2 - 1) / 2) = 1.
+TEST(Statistics, OfTwoValuesTheMeanHasAnInterval) {
+  const std::vector<double> values{0, 2};
+  const auto interval = mean_interval(values);
+  ASSERT_TRUE(interval.has_value());
+  EXPECT_NEAR(interval->low, 1 - 1.959964, 1e-12);
+  EXPECT_NEAR(interval->high, 1 + 1.959964, 1e-12);
+  EXPECT_FALSE(mean_interval(std::span(values).first(1)).has_value());
+}
+
+// Of 100 values 50 -+ 1.96 * 5 = 40.2 ... 59.8 in rank: outwards to whole ones, and one more above,
+// as a quantile lies from a rank to the next. Of 8 the ranks are 1 and 8, of 7 the upper is beyond.
+TEST(Statistics, OfTheMedianTheRanksAreCountedByHand) {
+  std::vector<double> values(100);
+  std::iota(values.begin(), values.end(), 1);
+  const auto of_all = quantile_interval(values, 0.5);
+  ASSERT_TRUE(of_all.has_value());
+  EXPECT_EQ(of_all->low, 40);
+  EXPECT_EQ(of_all->high, 61);
+  const auto of_eight = quantile_interval(std::span(values).first(8), 0.5);
+  ASSERT_TRUE(of_eight.has_value());
+  EXPECT_EQ(of_eight->low, 1);
+  EXPECT_EQ(of_eight->high, 8);
+  EXPECT_FALSE(quantile_interval(std::span(values).first(7), 0.5).has_value());
+}
+
 }  // namespace
 }  // namespace scan

@@ -133,5 +133,30 @@ TEST(StructuralResolution, RefusesWhatShowsNoWave) {
   EXPECT_THROW(resolution_m(falling(0.25, 2, 0.4, whole)), Error);
 }
 
+// Fields are half a period wide; the fifth on either side is half beyond the face of 1 m and does
+// not count: points on the inner nine tenths cover all that do.
+TEST(WaveResponse, CountsFieldsThatLieWhollyOnTheFace) {
+  WavePlate plate = plate_of(0.2, 0.02, whole);
+  std::erase_if(plate.points, [](const Eigen::Vector3d& x) {
+    return std::max(std::abs(x.x()), std::abs(x.y())) > 0.449;
+  });
+  EXPECT_EQ(wave_response(plate).coverage, 1);
+}
+
+// Five unknowns: from fewer than twice as many points nothing is told.
+TEST(WaveResponse, OfAFewPointsIsNothing) {
+  WavePlate plate = plate_of(0.25, 0.05, whole);
+  plate.points.resize(10);
+  for (std::size_t i = 0; i < 10; ++i) {  // on the face, at many phases
+    Eigen::Vector3d& x = plate.points[i];
+    x.x() = -0.4 + 0.083 * static_cast<double>(i);
+    x.y() = i % 3 == 0 ? 0.2 : -0.1;
+    x.z() = plate.amplitude_m * std::cos(2 * std::numbers::pi * x.x() / plate.period_m);
+  }
+  EXPECT_NEAR(wave_response(plate).transfer, 1, 1e-9);
+  plate.points.pop_back();
+  EXPECT_EQ(wave_response(plate).transfer, 0);
+}
+
 }  // namespace
 }  // namespace scan

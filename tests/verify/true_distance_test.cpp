@@ -106,5 +106,23 @@ TEST(Deviations, AreSignedAndKeepWhatIsNotFinite) {
   EXPECT_TRUE(std::isnan(deviations[2]));
 }
 
+// Two balls under a blend: its field falls short of the distance, so that a ball which lies between
+// the two in distance must be looked at though the blend's bound comes first.
+TEST(TrueDistance, LooksBehindABoundThatFallsShort) {
+  const PlacedShape blend =
+      at({0, 0, 0},
+         CombinedShape{CombinedShape::Operation::unite,
+                       1.5,
+                       {at({-1.2, 0, 0}, SphereShape{1}), at({1.2, 0, 0}, SphereShape{1})}});
+  const Eigen::Vector3d x(0, 0, 2);
+  const double bound_m = std::abs(field(blend, x).value_m);
+  const double blend_m = TrueDistance(TrueSurface{{blend}, {}}).nearest(x).signed_distance_m;
+  ASSERT_LT(bound_m, 0.9 * blend_m);
+  const double ball_m = (std::max(bound_m, 0.9 * blend_m) + blend_m) / 2;
+  const PlacedShape ball = at({0, 0, 2 + ball_m + 0.3}, SphereShape{0.3});
+  EXPECT_NEAR(TrueDistance(TrueSurface{{blend, ball}, {}}).nearest(x).signed_distance_m, ball_m,
+              1e-12);
+}
+
 }  // namespace
 }  // namespace scan

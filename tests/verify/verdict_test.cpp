@@ -29,10 +29,14 @@ TEST(Verdict, HoldsTheBorder) {
   EXPECT_FALSE(passes(1.9999999, ">=", 2));
   EXPECT_TRUE(passes(2, "==", 2));
   EXPECT_FALSE(passes(3, "==", 2));
+  EXPECT_TRUE(passes(-2, "within", 2));
+  EXPECT_TRUE(passes(2, "within", 2));
+  EXPECT_FALSE(passes(-2.5, "within", 2));
+  EXPECT_FALSE(passes(2.5, "within", 2));
 }
 
 TEST(Verdict, NaNNeverPasses) {
-  for (const char* relation : {"<=", ">=", "=="})
+  for (const char* relation : {"<=", ">=", "==", "within"})
     EXPECT_FALSE(passes(std::nan(""), relation, std::numeric_limits<double>::infinity()));
 }
 
@@ -55,6 +59,13 @@ TEST(Verdict, ListsAMeasurementOncePerLimit) {
   EXPECT_TRUE(verdict.measurements[0].pass);
   EXPECT_FALSE(verdict.measurements[1].pass);
   EXPECT_FALSE(verdict.pass);
+}
+
+TEST(Verdict, FailsWhicheverLimitIsBroken) {
+  EXPECT_FALSE(
+      judge(measured(3), {{"accuracy_rms", "<=", 2, ""}, {"components", "==", 1, ""}}).pass);
+  EXPECT_FALSE(
+      judge(measured(3), {{"accuracy_rms", "<=", 4, ""}, {"components", "==", 2, ""}}).pass);
 }
 
 TEST(Verdict, WithoutLimitsPasses) {

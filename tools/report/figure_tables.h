@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
-// The report's tables, from its twin (tools/report/twin.h); each is empty where there is nothing.
+// The report's tables of figures, from its twin (tools/report/twin.h); each is empty where there is
+// nothing.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,23 +12,11 @@ namespace scan {
 // The figures that have a limit, with interval, margin and the limit's reason.
 std::string limit_table(const nlohmann::ordered_json& measurements);
 
-// All figures with what each was taken over; where there are predictions they stand beside.
+// All figures with what each was taken over, and whether an uncertainty is honest; columns of
+// intervals, predictions, limits and verdicts where some figure has one.
 std::string figure_table(const std::string& caption, const nlohmann::ordered_json& measurements);
 
 std::string statistics_table(const nlohmann::ordered_json& statistics);
 std::string call_out_table(const nlohmann::ordered_json& call_outs);
-std::string scan_table(const nlohmann::ordered_json& scans);
-std::string pose_table(const nlohmann::ordered_json& alignment);
-std::string pair_table(const nlohmann::ordered_json& alignment);
-
-// With the seconds that each effect took, by its name.
-std::string effect_table(const nlohmann::ordered_json& effects);
-
-// Every key with its value; numbers by the unit that the key's ending names.
-std::string property_list(const nlohmann::ordered_json& object);
-
-// Seconds of each stage, machine, threads and the cost of each effect, on or not: <table
-// id="seconds">.
-std::string cost_table(const nlohmann::ordered_json& cost, const nlohmann::ordered_json& effects);
 
 }  // namespace scan

@@ -130,6 +130,14 @@ std::string exact_cell(const nlohmann::ordered_json& value, const std::string& u
   return "<td class=\"number\">" + exact(value, unit) + "</td>";
 }
 
+std::string raw_cell(const std::string& html, bool number) {
+  return std::string(number ? "<td class=\"number\">" : "<td>") + html + "</td>";
+}
+
+std::string warning_tag(const std::string& words) {
+  return "<span class=\"tag warn\">" + escaped(words) + "</span>";
+}
+
 std::string section(const std::string& id, const std::string& title, const std::string& content) {
   return "<section id=\"" + id + "\" aria-labelledby=\"" + id + "-title\"><h2 id=\"" + id +
          "-title\">" + escaped(title) + "</h2>\n" + content + "</section>\n";

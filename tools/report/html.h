@@ -41,6 +41,12 @@ std::string exact(const nlohmann::ordered_json& value, const std::string& unit);
 std::string signed_exact(const nlohmann::ordered_json& value, const std::string& unit);
 std::string exact_cell(const nlohmann::ordered_json& value, const std::string& unit);
 
+// A cell of HTML as it stands.
+std::string raw_cell(const std::string& html, bool number = false);
+
+// Words that warn, set off as a verdict is.
+std::string warning_tag(const std::string& words);
+
 // A part of a page with a heading that can be linked to.
 std::string section(const std::string& id, const std::string& title, const std::string& content);
 

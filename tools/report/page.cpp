@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "tools/left_out.h"
 #include "tools/report/deviation_map.h"
 #include "tools/report/figure_tables.h"
 #include "tools/report/html.h"
+#include "tools/report/run_tables.h"
 #include "tools/report/scene_data.h"
 #include "tools/report/svg.h"
 #include "tools/report/tradeoff_page.h"
@@ -86,6 +88,14 @@ std::string missing_note(const ordered_json& missing) {
   for (const auto& sentence : missing)
     html += "<li>" + escaped(sentence.get<std::string>()) + "</li>";
   return html + "</ul></div>\n";
+}
+
+// Beside the verdict: what it does not cover.
+std::string left_out_note(const ordered_json& left_out) {
+  const std::string text = left_out_text(left_out);
+  if (text.empty()) return "";
+  return "<div class=\"note\" role=\"note\"><strong>Not the whole physics:</strong> " +
+         escaped(text) + ".</div>\n";
 }
 
 std::string verdict_part(const ordered_json& twin) {
@@ -168,7 +178,8 @@ std::string page_with(const ordered_json& twin, const Drawn& drawn) {
   std::string html =
       page_head(twin.at("title").get<std::string>() + " - libscan report",
                 drawn.view.empty() ? std::vector<std::string_view>{} : viewer_scripts());
-  html += header(twin) + contents(parts) + missing_note(twin.at("missing")) + "<main>\n";
+  html += header(twin) + left_out_note(twin.at("left_out")) + contents(parts) +
+          missing_note(twin.at("missing")) + "<main>\n";
   for (const Part& part : parts) html += section(part.id, part.title, part.content);
   return html + "</main></body></html>\n";
 }

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/record.h"
 
+#include <initializer_list>
+
 #include "libscan/core/error.h"
-#include "libscan/io/atomic_file.h"
-#include "libscan/io/json_reader.h"
 #include "libscan/io/surface_file.h"
 #include "libscan/io/truth_file.h"
 #include "libscan/verify/surface_error.h"
@@ -17,14 +17,15 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-// Keys stay in the order of the file; read_json() names the line of what is broken.
 ordered_json read_part(const fs::path& path) {
   try {
-    read_json(path);
-    return ordered_json::parse(read_file(path), nullptr, true, true);
+    return read_ordered_json(path);
   } catch (const Error& error) {
-    throw Error(error.trouble(), error.what(),
-                "was the run cut short? scan run --resume goes on with it, --force begins anew");
+    const bool is_recipe = path.filename() == "recipe.json";  // without it nothing goes on
+    throw Error(
+        error.trouble(), error.what(),
+        std::string("was the run cut short? scan run ") +
+            (is_recipe ? "--force begins anew" : "--resume goes on with it, --force begins anew"));
   }
 }
 
@@ -35,9 +36,17 @@ ordered_json part_if_there(const fs::path& path, const std::string& tells, RunRe
   return nullptr;
 }
 
-ordered_json optional_part(const fs::path& named, const fs::path& usual) {
-  if (!named.empty()) return read_part(named);
-  return fs::exists(usual) ? read_part(usual) : ordered_json();
+// Of a file that holds each of these keys.
+ordered_json optional_part(const fs::path& named, const fs::path& usual,
+                           std::initializer_list<const char*> keys) {
+  const fs::path path = named.empty() ? usual : named;
+  if (named.empty() && !fs::exists(usual)) return nullptr;
+  const ordered_json part = named.empty() ? read_part(path) : read_ordered_json(path);
+  for (const char* key : keys)
+    if (!part.is_object() || !part.contains(key))
+      throw Error(Trouble::input,
+                  path.string() + ": is no such file: must hold " + std::string(key));
+  return part;
 }
 
 void check_shape(const fs::path& run, const RunRecord& record) {
@@ -117,8 +126,9 @@ RunRecord read_record(const fs::path& run, const fs::path& artefacts, const fs::
       part_if_there(run / "reconstruction.json", "no surface was reconstructed", record);
   record.verdict = part_if_there(run / "verdict.json", "nothing was verified", record);
   record.timings = part_if_there(run / "timings.json", "what it cost is unknown", record);
-  record.artefacts = optional_part(artefacts, run / "artefacts.json");
-  record.tradeoff = optional_part(tradeoff, run / "tradeoff.json");
+  record.artefacts = optional_part(artefacts, run / "artefacts.json", {"measurements"});
+  record.tradeoff =
+      optional_part(tradeoff, run / "tradeoff.json", {"figure", "unit", "runs", "cases"});
   check_shape(run, record);
   read_scans(run, record);
   if (!record.world_from_scan.empty()) read_steps(run, record);

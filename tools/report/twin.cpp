@@ -6,6 +6,7 @@
 
 #include "libscan/io/atomic_file.h"
 #include "libscan/io/json_output.h"
+#include "tools/left_out.h"
 #include "tools/report/deviation.h"
 #include "tools/report/picture.h"
 #include "tools/run_files.h"
@@ -119,6 +120,7 @@ ordered_json report_twin(const RunRecord& record) {
           {"title", record.title},
           {"verdict", verdict_word(verdict)},
           {"missing", record.missing},
+          {"left_out", left_out_effects(record.effects, record.recipe)},
           {"provenance",
            {{"version", version_text()},
             {"compiler", version_json().at("compiler")},
@@ -140,6 +142,8 @@ ordered_json report_twin(const RunRecord& record) {
 std::string report_csv(const ordered_json& twin) {
   std::string csv = "part,name,value,unit,low,high,relation,limit,pass,count,over\n";
   csv += measurement_lines("verdict", twin.at("measurements"));
+  for (const auto& effect : twin.at("left_out"))
+    csv += plain_line("left_out", effect.at("effect"), effect.at("bound_m"), "m");
   if (const ordered_json& deviation = twin.at("deviation"); !deviation.is_null()) {
     for (const auto& [name, value] : deviation.at("statistics").items())
       csv += plain_line("deviation", name, value, name.ends_with("_m") ? "m" : "count");

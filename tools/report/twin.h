@@ -10,12 +10,12 @@
 
 namespace scan {
 
-// `report`: 1, `title`, `verdict` ("pass", "fail", "not verified"), `missing`, `provenance`
-// (`version`, `compiler`, `seed`, `recipe`: fingerprint), `measurements` (as verdict.json),
-// `deviation` (null without; `statistics`, `histogram`, `call_outs`: [{`number`, `position_m`,
-// `deviation_m`, `support_m`}]), `scans`, `alignment`, `reconstruction`, `effects`, `artefacts`,
-// `tradeoff`, `recipe`, and `cost` (`machine`, `threads`, `seconds`), which alone differs between
-// equal runs.
+// `report`: 1, `title`, `verdict` ("pass", "fail", "not verified"), `missing`, `left_out` (as
+// left_out_effects() tells it), `provenance` (`version`, `compiler`, `seed`, `recipe`:
+// fingerprint), `measurements` (as verdict.json), `deviation` (null without; `statistics`,
+// `histogram`, `call_outs`: [{`number`, `position_m`, `deviation_m`, `support_m`}]), `scans`,
+// `alignment`, `reconstruction`, `effects`, `artefacts`, `tradeoff`, `recipe`, and `cost`
+// (`machine`, `threads`, `seconds`), which alone differs between equal runs.
 nlohmann::ordered_json report_twin(const RunRecord& record);
 
 // The figures one a line: part, name, value, unit, low, high, relation, limit, pass, count, over.

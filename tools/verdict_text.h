@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The libscan authors
+// SPDX-License-Identifier: Apache-2.0
+// A verdict as it is read: figures, what they are, what is odd about them.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "tools/console.h"
+
+namespace scan {
+
+// Of a measurement that lies beyond its "expected": "uncertainty stated too small" (the errors are
+// larger) or "uncertainty stated too large"; else empty.
+std::string statement_remark(const nlohmann::ordered_json& measurement);
+
+// Each measurement of a verdict.json, with its prediction where there is one, and its definition in
+// the line below; then PASS or FAIL, and below it what "left_out" names (tools/left_out.h).
+void say_verdict(const nlohmann::ordered_json& verdict, const Console& console);
+
+}  // namespace scan
