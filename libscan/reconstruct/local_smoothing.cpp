@@ -100,6 +100,15 @@ std::vector<double> LocalSmoothing::mean_around(const std::vector<double>& value
   return result;
 }
 
+std::vector<char> LocalSmoothing::are_positive_around(const std::vector<double>& values) const {
+  std::vector<double> sums(length_.size(), 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) sums[region_of_[i]] += values[i];
+  sums = around(sums);
+  std::vector<char> result;
+  for (const std::uint32_t r : region_of_) result.push_back(sums[r] > 0);
+  return result;
+}
+
 std::vector<double> LocalSmoothing::lengths() const {
   const std::size_t regions = length_.size();
   std::vector<double> logs(regions), counts(regions, 0.0);

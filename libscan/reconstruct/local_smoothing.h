@@ -39,6 +39,8 @@ class LocalSmoothing {
                const std::vector<double>& trust);
   // Per sample, the mean of such values' sizes around it.
   std::vector<double> mean_around(const std::vector<double>& values) const;
+  // Per sample, whether such values sum up to more than 0 around it.
+  std::vector<char> are_positive_around(const std::vector<double>& values) const;
   // What was kept, per sample; the logarithm goes smoothly from region to region.
   std::vector<double> lengths() const;
 

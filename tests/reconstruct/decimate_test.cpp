@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "libscan/core/error.h"
+#include "libscan/core/random.h"
 #include "libscan/reconstruct/ssd.h"
 #include "libscan/reconstruct/trim.h"
 #include "libscan/search/hausdorff.h"
@@ -55,6 +56,34 @@ TEST(Decimate, KeepsAnOpenRim) {
   EXPECT_GT(census.boundary_edges, 0u);
   EXPECT_EQ(census.non_manifold_edges, 0u);
   EXPECT_LE(hausdorff_distance(result.surface, before, {.limit_m = 0.01}).high_m, 0.01);
+}
+
+// Heights at random between 0 and twice the width of a square, each cut along the same diagonal.
+SurfaceResult rough_field(std::uint32_t side) {
+  SurfaceResult result;
+  RandomStream random(1, 0, 0);
+  for (std::uint32_t y = 0; y <= side; ++y)
+    for (std::uint32_t x = 0; x <= side; ++x)
+      result.surface.vertices.emplace_back(x, y, 2 * random.uniform());
+  for (std::uint32_t y = 0; y < side; ++y)
+    for (std::uint32_t x = 0; x < side; ++x) {
+      const std::uint32_t a = x + y * (side + 1), c = a + side + 1;
+      result.surface.triangles.push_back({a, a + 1, c + 1});
+      result.surface.triangles.push_back({a, c + 1, c});
+    }
+  return result;
+}
+
+// So rough that what is looked at on the way does not tell how far the rest is off: the first two
+// results are refused.
+TEST(Decimate, RefusesWhatIsNotProven) {
+  SurfaceResult result = rough_field(30);
+  const Mesh before = result.surface;
+  const DecimateReport report = decimate(result, 0.5);
+  EXPECT_TRUE(report.is_proven);
+  EXPECT_LE(report.bound_m, 0.5);
+  EXPECT_LT(result.surface.triangles.size(), before.triangles.size());
+  EXPECT_LE(hausdorff_distance(result.surface, before, {.limit_m = 0.5}).high_m, 0.5);
 }
 
 TEST(Decimate, RefusesNoTolerance) {

@@ -139,6 +139,20 @@ TEST(LocalSmoothing, AveragesSizesAround) {
   for (const double mean : smoothing.mean_around(values)) EXPECT_NEAR(mean, 3, 1e-12);
 }
 
+// Regions are sqrt(50 / 10000) wide, and each sum reaches one of them farther.
+TEST(LocalSmoothing, TellsWhereSumsArePositive) {
+  const Samples samples = unit_square(100, 1e-3);
+  const LocalSmoothing smoothing(samples);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < samples.points.size(); ++i)
+    values.push_back((samples.points[i][0] < 0.5 ? -1 : 1) + (i % 2 == 0 ? 3 : -3));
+  const std::vector<char> is_positive = smoothing.are_positive_around(values);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (const double x = samples.points[i][0] - 0.5; std::abs(x) > 2 * std::sqrt(50e-4)) {
+      EXPECT_EQ(is_positive[i] != 0, x > 0);
+    }
+}
+
 TEST(LocalSmoothing, TellsHowManySamplesFaredBetter) {
   const Samples samples = unit_square(50, 1e-3);
   LocalSmoothing smoothing(samples);
