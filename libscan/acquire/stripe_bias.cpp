@@ -159,18 +159,21 @@ StripeShift shift_of(std::span<const LitPlace> places) {
   return shift;
 }
 
-// Places one and other on both sides, at `ahead` and `behind`, and those beyond at twice their
-// distance if the body is seen there.
+// Noise must not decide which of two steps, one at twice the distance, is the place beyond.
+constexpr double beyond_share = 1.9;
+
+// Places one and other on both sides, at `ahead` and `behind`, and those beyond at nearly twice
+// their distance and more if the body is seen there.
 StripeShift shift_between(const Walk& walk, const LitRay& here, const LitPlace& one, long ahead,
                           const LitPlace& other, long behind) {
   std::vector<LitPlace> places = {
       {0, here.column_px, here.height_e, here.width_px, here.sigma_px}, one, other};
   if (ahead > 0 && behind < 0) {
-    const auto twice = [&](const LitPlace& place) {
-      return 2 * std::abs(place.column_px - here.column_px);
+    const auto least_px = [&](const LitPlace& place) {
+      return beyond_share * std::abs(place.column_px - here.column_px);
     };
-    const auto beyond_one = walk.next(ahead, 1, twice(one));
-    const auto beyond_other = walk.next(behind, -1, twice(other));
+    const auto beyond_one = walk.next(ahead, 1, least_px(one));
+    const auto beyond_other = walk.next(behind, -1, least_px(other));
     if (beyond_one && beyond_other) places.insert(places.end(), {*beyond_one, *beyond_other});
   }
   return shift_of(places);

@@ -237,20 +237,27 @@ void add_noise(LitRay& ray, double column_px, double log_height) {
   ray.height_e *= std::exp(log_height);
 }
 
+constexpr double noise_px = 0.01;
+
+Sweep noisy_sweep(std::size_t rows) {
+  Sweep sweep = sweep_over_rows(25, rows);
+  for (std::size_t i = 0; i < sweep.rays.size(); ++i) {
+    RandomStream random(3, 0, i);
+    sweep.rays[i].sigma_px = noise_px;
+    sweep.rays[i].width_px = 1.6;  // four widths are four steps, clear of three and of five
+    const double log_height = std::sqrt(1.5) * noise_px / sweep.rays[i].width_px;
+    add_noise(sweep.rays[i], noise_px * random.normal(), log_height * random.normal());
+  }
+  return sweep;
+}
+
 // Stripes of a plane with independent normal noise, one ray each of 4000 rows: the squares over
 // their variances have the mean 1 to five times sqrt(2 / 4000). Other steps see a column's error
 // 200 (0.6 + 0.8 x) long for 120, which is 8 % at the places beyond; on the other side it is as
 // much too short, so that its square, 0.6 %, is left.
 TEST(StripeShift, VarianceIsThatOfItsNoise) {
-  constexpr double sigma_px = 0.01, width_px = 1.5;
   const std::size_t rows = 4000, step = 12;
-  Sweep sweep = sweep_over_rows(25, rows);
-  for (std::size_t i = 0; i < sweep.rays.size(); ++i) {
-    RandomStream random(3, 0, i);
-    sweep.rays[i].sigma_px = sigma_px;
-    add_noise(sweep.rays[i], sigma_px * random.normal(),
-              std::sqrt(1.5) * sigma_px / width_px * random.normal());
-  }
+  const Sweep sweep = noisy_sweep(rows);
   double of_shift = 0, of_ahead = 0, of_behind = 0;
   const auto square = [](double value, double variance) { return value * value / variance; };
   for (std::size_t row = 0; row < rows; ++row) {
@@ -264,6 +271,29 @@ TEST(StripeShift, VarianceIsThatOfItsNoise) {
   EXPECT_NEAR(of_shift, 1, tolerance);
   EXPECT_NEAR(of_ahead, 1, tolerance);
   EXPECT_NEAR(of_behind, 1, tolerance);
+}
+
+// The mean over twelve rows, at every thirteenth of them, where the means share none: 1538. What is
+// unknown besides its noise is on average the positive part of d^2 / v - 1 of the larger of two
+// departures d with the variance v: for one of them 2 phi(1) = 0.48, for both at most 0.97, where
+// d^2 / v itself is 1 and more. Its standard deviation is 2 at most.
+TEST(StripeShifts, VarianceIsThatOfTheMean) {
+  const std::size_t rows = 20'000, first = 12 * rows;
+  const Sweep sweep = noisy_sweep(rows);
+  const auto shifts = stripe_shifts(sweep.frames, sweep.rays);
+  double of_mean = 0, of_misfit = 0, count = 0;
+  for (std::size_t ray = first + 6; ray + 6 < first + rows; ray += 13) {
+    const StripeShift own = stripe_shift(sweep.frames, sweep.rays, ray).value();
+    const StripeShift& mean = shifts[ray].value();
+    const auto& [ahead, behind] = own.departures.value();
+    const double departure_px2 = std::max(ahead.variance_px2, behind.variance_px2) / 12;
+    of_mean += mean.shift_px * mean.shift_px / mean.variance_px2;
+    of_misfit += (mean.unknown_px * mean.unknown_px - mean.variance_px2) / departure_px2;
+    ++count;
+  }
+  EXPECT_NEAR(of_mean / count, 1, 5 * std::sqrt(2 / count) + 0.006);
+  EXPECT_GT(of_misfit / count, 0.48 - 5 * 2 / std::sqrt(count));
+  EXPECT_LT(of_misfit / count, 0.97 + 5 * 2 / std::sqrt(count));
 }
 
 // By central differences of the shift, to their third order and to what the slope u = a p changes
