@@ -117,7 +117,7 @@ RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_
                           Image<float>(left.width, left.height, unknown)};
   const int half = refinement_window_px(block_px) / 2;
   const Image<float> left_grey = in_floats(left), right_grey = in_floats(right);
-  const Smoothed images{smoothed(left_grey), smoothed(right_grey)};
+  const Smoothed images = smoothed(left_grey, right_grey);
   for (int pass = 0; pass < passes; ++pass) {
     const Image<float> shape = result.disparity_px;
     parallel_for(disparity_px.pixels.size(), [&](std::size_t i) {

@@ -30,10 +30,28 @@ bool sample(const Image<float>& image, double x, int row, Sample& result) {
   return true;
 }
 
-// To fourth order, so that waves of 7 px lose 2 % and not 13 %.
-double slope_of(const Image<float>& image, int column, int row) {
-  const auto at = [&](int x) { return image(std::clamp(x, 0, image.width - 1), row); };
-  return (8 * (at(column + 1) - at(column - 1)) - (at(column + 2) - at(column - 2))) / 12;
+Image<float> smoothed(const Image<float>& image) {
+  Image<float> result(image.width, image.height);
+  parallel_for(static_cast<std::size_t>(image.height), [&](std::size_t index) {
+    const int row = static_cast<int>(index);
+    for (int x = 0; x < image.width; ++x)
+      result(x, row) = (image(std::max(x - 1, 0), row) + 2 * image(x, row) +
+                        image(std::min(x + 1, image.width - 1), row)) /
+                       4;
+  });
+  return result;
+}
+
+// Along the rows; to fourth order, so that waves of 7 px lose 2 % and not 13 %.
+Image<float> slopes_of(const Image<float>& image) {
+  Image<float> result(image.width, image.height);
+  parallel_for(static_cast<std::size_t>(image.height), [&](std::size_t index) {
+    const int row = static_cast<int>(index);
+    const auto at = [&](int x) { return image(std::clamp(x, 0, image.width - 1), row); };
+    for (int x = 0; x < image.width; ++x)
+      result(x, row) = (8 * (at(x + 1) - at(x - 1)) - (at(x + 2) - at(x - 2))) / 12;
+  });
+  return result;
 }
 
 // Variance of a pixel. The residuals have the covariance s^2 2 C, C as above, of trace n `noise`,
@@ -51,22 +69,16 @@ double pixel_variance(const Fit& fit, const Correlated& noise) {
 
 }  // namespace
 
-Image<float> smoothed(const Image<float>& image) {
-  Image<float> result(image.width, image.height);
-  parallel_for(static_cast<std::size_t>(image.height), [&](std::size_t index) {
-    const int row = static_cast<int>(index);
-    for (int x = 0; x < image.width; ++x)
-      result(x, row) = (image(std::max(x - 1, 0), row) + 2 * image(x, row) +
-                        image(std::min(x + 1, image.width - 1), row)) /
-                       4;
-  });
-  return result;
-}
-
 Image<float> in_floats(const Image<std::uint8_t>& image) {
   Image<float> result(image.width, image.height);
   std::copy(image.pixels.begin(), image.pixels.end(), result.pixels.begin());
   return result;
+}
+
+Smoothed smoothed(const Image<float>& left, const Image<float>& right) {
+  Smoothed images{smoothed(left), smoothed(right), {}};
+  images.left_slopes = slopes_of(images.left);
+  return images;
 }
 
 Fit fit_at(const Smoothed& images, const std::vector<WindowPixel>& window, double d) {
@@ -76,7 +88,7 @@ Fit fit_at(const Smoothed& images, const std::vector<WindowPixel>& window, doubl
     Sample seen;
     if (!sample(images.right, pixel.column - d - pixel.offset_px, pixel.row, seen)) continue;
     const double error = images.left(pixel.column, pixel.row) - seen.value;
-    const double left_slope = slope_of(images.left, pixel.column, pixel.row);
+    const double left_slope = images.left_slopes(pixel.column, pixel.row);
     // What (1, 2, 1) / 4 and cubic convolution leave of a pixel's variance: the sum of the squares
     // of all weights is 3 / 8 - (9 u^2 + 6 u^3) / 32, u = t (1 - t).
     const double u = seen.fraction * (1 - seen.fraction);
@@ -131,7 +143,7 @@ Correlated correlated_at(const Smoothed& images, const std::vector<WindowPixel>&
   for (const WindowPixel& pixel : window) {
     Sample seen;
     if (!sample(images.right, pixel.column - d - pixel.offset_px, pixel.row, seen)) continue;
-    const double left_slope = slope_of(images.left, pixel.column, pixel.row);
+    const double left_slope = images.left_slopes(pixel.column, pixel.row);
     slopes.push_back({pixel.column, pixel.row, left_slope, seen.slope});
     left += left_slope;
     right += seen.slope;

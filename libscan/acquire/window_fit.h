@@ -14,10 +14,10 @@ namespace scan::decoding {
 // to fine texture and to noise, and with it the errors that both make (Pan 2013: Gaussian
 // pre-filtering).
 struct Smoothed {
-  Image<float> left, right;
+  Image<float> left, right, left_slopes;
 };
 Image<float> in_floats(const Image<std::uint8_t>& image);
-Image<float> smoothed(const Image<float>& image);
+Smoothed smoothed(const Image<float>& left, const Image<float>& right);
 
 // One pixel of the window: where it is, and its share of the disparity's slope.
 struct WindowPixel {
