@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "libscan/acquire/stripe_peak.h"
-#include "libscan/core/random.h"
+#include "tests/acquire/stripe_sweep.h"
 
 namespace scan::decoding {
 namespace {
@@ -55,27 +55,6 @@ TEST(StripeShift, OfAnEvenFlatBodyIsNone) {
   const Body flat{6, 0, 0};
   EXPECT_NEAR(stripe_shift_px(flat.place(0), flat.place(-4), flat.place(5), 6), 0, 1e-13);
   EXPECT_EQ(stripe_shift_px(flat.place(0), flat.place(0), flat.place(5), 6), 0);
-}
-
-// A head that moves along x over a plane z = 1: columns and offsets are both linear.
-struct Sweep {
-  StripeImages frames;
-  std::vector<LitRay> rays;
-};
-
-Sweep sweep_over_a_plane(std::size_t steps) {
-  Sweep sweep;
-  sweep.frames.calibration.camera = {
-      .width_px = 200, .height_px = 1, .fx_px = 200, .fy_px = 200, .cx_px = 100, .cy_px = 0};
-  sweep.frames.calibration.plane_normal = Eigen::Vector3d(0.8, 0, 0.6);
-  sweep.frames.calibration.plane_offset_m = 0.6;  // meets z = 1 at x = 0
-  for (std::size_t step = 0; step < steps; ++step) {
-    const Eigen::Vector3d at(0.01 * static_cast<double>(step), 0, 0);  // two columns a step
-    sweep.frames.images.emplace_back(200, 1);
-    sweep.frames.scanner_from_camera.push_back(make_pose(Eigen::Matrix3d::Identity(), at));
-    sweep.rays.push_back({at + Eigen::Vector3d(0, 0, 1), 100, 1.5, 1000});
-  }
-  return sweep;
 }
 
 TEST(StripeShift, OfAPlaneIsNoneFromEndToEndOfTheSweep) {
@@ -177,15 +156,6 @@ TEST(StripeShift, GrowsWithTheBrightnessStep) {
   EXPECT_NEAR(stripe_shift(sweep.frames, sweep.rays, 2).value().shift_px, 0, 1e-9);
 }
 
-// Rows of a plane that are lit alike, one behind the other.
-Sweep sweep_over_rows(std::size_t steps, std::size_t rows) {
-  Sweep one = sweep_over_a_plane(steps), all;
-  all.frames = one.frames;
-  all.frames.calibration.camera.height_px = static_cast<int>(rows);
-  for (const LitRay& ray : one.rays) all.rays.insert(all.rays.end(), rows, ray);
-  return all;
-}
-
 // Brightness that doubles between two steps as above, a quarter more of it from row to row: the
 // mean over rows as far to either side is that of the middle one, whatever its own stripe says. Six
 // rows, four widths, count; of 0.1 px in the sixth the mean of twelve has 3 (1.5 / 7)^2 / 2 / 12 or
@@ -227,73 +197,6 @@ TEST(StripeShifts, OfASmoothBodyAreKnownWhereFourPlacesTellThem) {
     const bool is_checked = step >= 6 && step <= 18;
     EXPECT_NEAR(shift.unknown_px, is_checked ? 0 : std::abs(shift.shift_px), 1e-7) << step;
   }
-}
-
-// A column that is off by so much: the point has moved within the plane of light, along (0.6, 0,
-// -0.8), 200 * 0.6 columns a metre.
-void add_noise(LitRay& ray, double column_px, double log_height) {
-  ray.column_px += column_px;
-  ray.point += column_px / 120 * Eigen::Vector3d(0.6, 0, -0.8);
-  ray.height_e *= std::exp(log_height);
-}
-
-constexpr double noise_px = 0.01;
-
-Sweep noisy_sweep(std::size_t rows) {
-  Sweep sweep = sweep_over_rows(25, rows);
-  for (std::size_t i = 0; i < sweep.rays.size(); ++i) {
-    RandomStream random(3, 0, i);
-    sweep.rays[i].sigma_px = noise_px;
-    sweep.rays[i].width_px = 1.6;  // four widths are four steps, clear of three and of five
-    const double log_height = std::sqrt(1.5) * noise_px / sweep.rays[i].width_px;
-    add_noise(sweep.rays[i], noise_px * random.normal(), log_height * random.normal());
-  }
-  return sweep;
-}
-
-// Stripes of a plane with independent normal noise, one ray each of 4000 rows: the squares over
-// their variances have the mean 1 to five times sqrt(2 / 4000). Other steps see a column's error
-// 200 (0.6 + 0.8 x) long for 120, which is 8 % at the places beyond; on the other side it is as
-// much too short, so that its square, 0.6 %, is left.
-TEST(StripeShift, VarianceIsThatOfItsNoise) {
-  const std::size_t rows = 4000, step = 12;
-  const Sweep sweep = noisy_sweep(rows);
-  double of_shift = 0, of_ahead = 0, of_behind = 0;
-  const auto square = [](double value, double variance) { return value * value / variance; };
-  for (std::size_t row = 0; row < rows; ++row) {
-    const StripeShift shift = stripe_shift(sweep.frames, sweep.rays, step * rows + row).value();
-    const auto& [ahead, behind] = shift.departures.value();
-    of_shift += square(shift.shift_px, shift.variance_px2) / rows;
-    of_ahead += square(ahead.value_px, ahead.variance_px2) / rows;
-    of_behind += square(behind.value_px, behind.variance_px2) / rows;
-  }
-  const double tolerance = 5 * std::sqrt(2.0 / rows) + 0.006;
-  EXPECT_NEAR(of_shift, 1, tolerance);
-  EXPECT_NEAR(of_ahead, 1, tolerance);
-  EXPECT_NEAR(of_behind, 1, tolerance);
-}
-
-// The mean over twelve rows, at every thirteenth of them, where the means share none: 1538. What is
-// unknown besides its noise is on average the positive part of d^2 / v - 1 of the larger of two
-// departures d with the variance v: for one of them 2 phi(1) = 0.48, for both at most 0.97, where
-// d^2 / v itself is 1 and more. Its standard deviation is 2 at most.
-TEST(StripeShifts, VarianceIsThatOfTheMean) {
-  const std::size_t rows = 20'000, first = 12 * rows;
-  const Sweep sweep = noisy_sweep(rows);
-  const auto shifts = stripe_shifts(sweep.frames, sweep.rays);
-  double of_mean = 0, of_misfit = 0, count = 0;
-  for (std::size_t ray = first + 6; ray + 6 < first + rows; ray += 13) {
-    const StripeShift own = stripe_shift(sweep.frames, sweep.rays, ray).value();
-    const StripeShift& mean = shifts[ray].value();
-    const auto& [ahead, behind] = own.departures.value();
-    const double departure_px2 = std::max(ahead.variance_px2, behind.variance_px2) / 12;
-    of_mean += mean.shift_px * mean.shift_px / mean.variance_px2;
-    of_misfit += (mean.unknown_px * mean.unknown_px - mean.variance_px2) / departure_px2;
-    ++count;
-  }
-  EXPECT_NEAR(of_mean / count, 1, 5 * std::sqrt(2 / count) + 0.006);
-  EXPECT_GT(of_misfit / count, 0.48 - 5 * 2 / std::sqrt(count));
-  EXPECT_LT(of_misfit / count, 0.97 + 5 * 2 / std::sqrt(count));
 }
 
 // By central differences of the shift, to their third order and to what the slope u = a p changes
