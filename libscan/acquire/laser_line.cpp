@@ -110,9 +110,10 @@ std::vector<RayOutcome> corrected(const StripeImages& frames, std::span<const Re
   std::vector<decoding::LitRay> rays;
   rays.reserve(readings.size());
   for (const auto& [outcome, peak] : readings)
-    rays.push_back(outcome.miss.empty() ? decoding::LitRay{outcome.point, peak.column_px,
-                                                           peak.width_px, peak.height_e}
-                                        : decoding::LitRay{});
+    rays.push_back(outcome.miss.empty()
+                       ? decoding::LitRay{outcome.point, peak.column_px, peak.width_px,
+                                          peak.height_e, peak.sigma_px}
+                       : decoding::LitRay{});
   const auto shifts = decoding::stripe_shifts(frames, rays);
   const auto rows = static_cast<std::size_t>(frames.calibration.camera.height_px);
   std::vector<RayOutcome> outcomes(readings.size());

@@ -29,7 +29,7 @@ std::optional<LitPlace> place_of(const StripeImages& frames, std::size_t step, c
   const auto pixel = project(calibration.camera, x);
   if (!pixel) return std::nullopt;
   return LitPlace{calibration.plane_normal.dot(x) - calibration.plane_offset_m, pixel->x(),
-                  ray.height_e, ray.width_px};
+                  ray.height_e, ray.width_px, ray.sigma_px};
 }
 
 // Steps of one row are looked at in one direction until a place is far enough away. None if the
@@ -95,6 +95,92 @@ double stripe_shift_px(const LitPlace& here, const LitPlace& one, const LitPlace
   return width_px * width_px * (g / a + 3 * b / (a * a));
 }
 
+ShiftSlopes shift_slopes(const LitPlace& here, const LitPlace& one, const LitPlace& other,
+                         double width_px) {
+  const double p1 = one.offset_m - here.offset_m, p2 = other.offset_m - here.offset_m;
+  if (p1 == 0 || p2 == 0 || p1 == p2) return {};
+  const double slope1 = (one.column_px - here.column_px) / p1,
+               slope2 = (other.column_px - here.column_px) / p2;
+  const double a = slope1 - (slope1 - slope2) / (p1 - p2) * p1;
+  if (a == 0) return {};
+  const double g = width_px * width_px / a, b = 3 * g / a;
+  const double at_one = p1 * (p1 - p2), at_other = p2 * (p2 - p1);
+  return {{b / (p1 * p2), b / at_one, b / at_other},
+          {-g * (p1 + p2) / (p1 * p2), -g * p2 / at_one, -g * p1 / at_other}};
+}
+
+namespace {
+
+// What three of five places tell: here, one, other, beyond one and beyond the other.
+struct Parabola {
+  double shift_px;
+  std::array<double, 5> by_column = {}, by_log_height_px = {};
+
+  Parabola(std::span<const LitPlace> places, std::size_t one, std::size_t other)
+      : shift_px(stripe_shift_px(places[0], places[one], places[other], places[0].width_px)) {
+    const ShiftSlopes slopes =
+        shift_slopes(places[0], places[one], places[other], places[0].width_px);
+    const std::array<std::size_t, 3> index = {0, one, other};
+    for (std::size_t i = 0; i < 3; ++i) {
+      by_column[index[i]] = slopes.by_column[i];
+      by_log_height_px[index[i]] = slopes.by_log_height_px[i];
+    }
+  }
+  Parabola operator-(const Parabola& less) const {
+    Parabola rest = *this;
+    rest.shift_px -= less.shift_px;
+    for (std::size_t i = 0; i < 5; ++i) {
+      rest.by_column[i] -= less.by_column[i];
+      rest.by_log_height_px[i] -= less.by_log_height_px[i];
+    }
+    return rest;
+  }
+  // A Gaussian's height under shot noise is known to sqrt(3 / 2) times its centre's share of its
+  // width (Cramer-Rao: 3 / (2 N) and 1 / N for N electrons), under even noise to sqrt(3) / 2.
+  Told told(std::span<const LitPlace> places) const {
+    Told told{shift_px, 0};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double by_height = std::sqrt(1.5) * by_log_height_px[i] / places[i].width_px;
+      told.variance_px2 += (by_column[i] * by_column[i] + by_height * by_height) *
+                           places[i].sigma_px * places[i].sigma_px;
+    }
+    return told;
+  }
+};
+
+// Of the places here, one and other; with those beyond, what parabolas on one side say.
+StripeShift shift_of(std::span<const LitPlace> places) {
+  const Parabola middle(places, 1, 2);
+  const Told told = middle.told(places);
+  StripeShift shift{told.value_px, 0, true, told.variance_px2};
+  if (places.size() < 5) return shift;
+  shift.departures = {(Parabola(places, 1, 3) - middle).told(places),
+                      (Parabola(places, 2, 4) - middle).told(places)};
+  return shift;
+}
+
+// Noise must not decide which of two steps, one at twice the distance, is the place beyond.
+constexpr double beyond_share = 1.9;
+
+// Places one and other on both sides, at `ahead` and `behind`, and those beyond at nearly twice
+// their distance and more if the body is seen there.
+StripeShift shift_between(const Walk& walk, const LitRay& here, const LitPlace& one, long ahead,
+                          const LitPlace& other, long behind) {
+  std::vector<LitPlace> places = {
+      {0, here.column_px, here.height_e, here.width_px, here.sigma_px}, one, other};
+  if (ahead > 0 && behind < 0) {
+    const auto least_px = [&](const LitPlace& place) {
+      return beyond_share * std::abs(place.column_px - here.column_px);
+    };
+    const auto beyond_one = walk.next(ahead, 1, least_px(one));
+    const auto beyond_other = walk.next(behind, -1, least_px(other));
+    if (beyond_one && beyond_other) places.insert(places.end(), {*beyond_one, *beyond_other});
+  }
+  return shift_of(places);
+}
+
+}  // namespace
+
 std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<const LitRay> rays,
                                         std::size_t ray) {
   const LitRay& here = rays[ray];
@@ -116,18 +202,45 @@ std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<co
     return perhaps_cut;
   }
   if (here.width_px < whole_share * std::min(one->width_px, other->width_px)) return std::nullopt;
-  const double shift_px =
-      stripe_shift_px({0, here.column_px, here.height_e}, *one, *other, here.width_px);
-  if (!std::isfinite(shift_px)) return perhaps_cut;
-  return StripeShift{shift_px, 0, true};
+  const StripeShift shift = shift_between(walk, here, *one, ahead, *other, behind);
+  if (!std::isfinite(shift.shift_px)) return perhaps_cut;
+  return shift;
 }
 
 namespace {
 
-// The sum over rows at the same distance to either side.
+// The mean over rows at the same distance to either side.
 struct Around {
-  double sum_px = 0;
   int count = 0;
+  Told shift = {};
+  std::optional<std::array<Told, 2>> departures = std::array<Told, 2>{};
+
+  void add(const StripeShift& row) {
+    ++count;
+    shift.value_px += row.shift_px;
+    shift.variance_px2 += row.variance_px2;
+    if (!row.departures) departures.reset();
+    for (std::size_t i = 0; departures && i < 2; ++i) {
+      (*departures)[i].value_px += (*row.departures)[i].value_px;
+      (*departures)[i].variance_px2 += (*row.departures)[i].variance_px2;
+    }
+  }
+  Told mean_of(const Told& sum) const {
+    return {sum.value_px / count, sum.variance_px2 / count / count};
+  }
+  StripeShift mean() const {
+    const Told told = mean_of(shift);
+    double misfit_px2 = told.value_px * told.value_px;
+    if (departures) {
+      misfit_px2 = 0;
+      for (const Told& sum : *departures) {
+        const Told departure = mean_of(sum);
+        misfit_px2 =
+            std::max(misfit_px2, departure.value_px * departure.value_px - departure.variance_px2);
+      }
+    }
+    return {told.value_px, std::sqrt(misfit_px2 + told.variance_px2), true, told.variance_px2};
+  }
 };
 
 Around around(std::span<const LitRay> rays, std::span<const std::optional<StripeShift>> own,
@@ -142,8 +255,8 @@ Around around(std::span<const LitRay> rays, std::span<const std::optional<Stripe
   Around sum;
   for (std::size_t k = 1; k <= most; ++k) {
     if (!goes_on(ray - k + 1, ray - k) || !goes_on(ray + k - 1, ray + k)) break;
-    sum.sum_px += own[ray - k]->shift_px + own[ray + k]->shift_px;
-    sum.count += 2;
+    sum.add(*own[ray - k]);
+    sum.add(*own[ray + k]);
   }
   return sum;
 }
@@ -160,10 +273,9 @@ std::vector<std::optional<StripeShift>> stripe_shifts(const StripeImages& frames
   const auto rows = static_cast<std::size_t>(frames.calibration.camera.height_px);
   parallel_for(rays.size(), [&](std::size_t ray) {
     if (!own[ray] || !own[ray]->is_known) return;
-    const auto [sum_px, count] = around(rays, own, rows, ray);
-    const double mean_px = count > 0 ? sum_px / count : 0;
-    shifts[ray] =
-        StripeShift{mean_px, std::abs(count > 0 ? mean_px : own[ray]->shift_px), count > 0};
+    const Around rows_around = around(rays, own, rows, ray);
+    shifts[ray] = rows_around.count > 0 ? rows_around.mean()
+                                        : StripeShift{0, std::abs(own[ray]->shift_px), false};
   });
   return shifts;
 }

@@ -4,6 +4,7 @@
 // but those of the steps before and behind it can.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,7 @@ struct LitPlace {
   double column_px = 0;
   double height_e = 0;  // of its own stripe
   double width_px = 0;  // 1 sigma of it
+  double sigma_px = 0;  // of the column
 };
 
 // The stripe lights the places with offsets p by exp(-p^2 / (2 w^2)). Let u = a p + b p^2 be the
@@ -35,6 +37,13 @@ struct LitRay {
   double column_px = 0;
   double width_px = 0;  // 1 sigma of the stripe
   double height_e = 0;
+  double sigma_px = 0;  // of the column
+};
+
+// Something the places of stripes tell, and what their noise does to it.
+struct Told {
+  double value_px = 0;
+  double variance_px2 = 0;
 };
 
 // What form and brightness do to a stripe.
@@ -42,7 +51,19 @@ struct StripeShift {
   double shift_px = 0;    // of its centre by the formula above; 0 where it is not known
   double unknown_px = 0;  // one standard deviation of what else may have moved it, besides noise
   bool is_known = false;
+  double variance_px2 = 0;  // of shift_px by the noise of the three places
+  // By how much the parabolas through two places on one side differ from it, where there are such.
+  std::optional<std::array<Told, 2>> departures = {};
 };
+
+// What the noise of three places does to their shift, to first order: its derivatives by their
+// columns and by the logarithms of their heights, of `here`, `one` and `other` in turn (Lagrange's
+// parabola).
+struct ShiftSlopes {
+  std::array<double, 3> by_column = {}, by_log_height_px = {};
+};
+ShiftSlopes shift_slopes(const LitPlace& here, const LitPlace& one, const LitPlace& other,
+                         double width_px);
 
 // Of `ray` (of step * rows + row), by places of the same row that are seen at least four widths
 // away. Where the body is not seen that far to one side the stripe may be cut: then 0.15 widths are
@@ -58,8 +79,12 @@ std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<co
 // That of each ray as the rays around it tell: the mean over those of its step up to four widths
 // of rows away, as many to either side, as far as the stripe goes on (by less than a width from row
 // to row) and is known; its own left out, since it holds the noise of the centre that is to be
-// moved by it, three sixteenths. As much stays unknown: four widths may reach over a crease, where
-// a parabola is off by as much as it tells. Without such rays its own shift is unknown altogether.
+// moved by it, three sixteenths. Unknown stays the noise of that mean, and what a parabola over
+// four widths does not tell: on a smooth body those through two places on one side, the second
+// twice as far, say nearly the same; with a crease or an edge of colour on one side the other's is
+// right (Harten et al. 1987, essentially non-oscillatory interpolation). So the larger departure of
+// the two counts, their mean over the same rows, less what noise makes of its square. Where the
+// body is not seen so far, as much as the shift; without such rays its own is unknown altogether.
 std::vector<std::optional<StripeShift>> stripe_shifts(const StripeImages& frames,
                                                       std::span<const LitRay> rays);
 

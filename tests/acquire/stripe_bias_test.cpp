@@ -5,9 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "libscan/acquire/stripe_peak.h"
+#include "tests/acquire/stripe_sweep.h"
 
 namespace scan::decoding {
 namespace {
@@ -53,27 +55,6 @@ TEST(StripeShift, OfAnEvenFlatBodyIsNone) {
   const Body flat{6, 0, 0};
   EXPECT_NEAR(stripe_shift_px(flat.place(0), flat.place(-4), flat.place(5), 6), 0, 1e-13);
   EXPECT_EQ(stripe_shift_px(flat.place(0), flat.place(0), flat.place(5), 6), 0);
-}
-
-// A head that moves along x over a plane z = 1: columns and offsets are both linear.
-struct Sweep {
-  StripeImages frames;
-  std::vector<LitRay> rays;
-};
-
-Sweep sweep_over_a_plane(std::size_t steps) {
-  Sweep sweep;
-  sweep.frames.calibration.camera = {
-      .width_px = 200, .height_px = 1, .fx_px = 200, .fy_px = 200, .cx_px = 100, .cy_px = 0};
-  sweep.frames.calibration.plane_normal = Eigen::Vector3d(0.8, 0, 0.6);
-  sweep.frames.calibration.plane_offset_m = 0.6;  // meets z = 1 at x = 0
-  for (std::size_t step = 0; step < steps; ++step) {
-    const Eigen::Vector3d at(0.01 * static_cast<double>(step), 0, 0);  // two columns a step
-    sweep.frames.images.emplace_back(200, 1);
-    sweep.frames.scanner_from_camera.push_back(make_pose(Eigen::Matrix3d::Identity(), at));
-    sweep.rays.push_back({at + Eigen::Vector3d(0, 0, 1), 100, 1.5, 1000});
-  }
-  return sweep;
 }
 
 TEST(StripeShift, OfAPlaneIsNoneFromEndToEndOfTheSweep) {
@@ -175,15 +156,6 @@ TEST(StripeShift, GrowsWithTheBrightnessStep) {
   EXPECT_NEAR(stripe_shift(sweep.frames, sweep.rays, 2).value().shift_px, 0, 1e-9);
 }
 
-// Rows of a plane that are lit alike, one behind the other.
-Sweep sweep_over_rows(std::size_t steps, std::size_t rows) {
-  Sweep one = sweep_over_a_plane(steps), all;
-  all.frames = one.frames;
-  all.frames.calibration.camera.height_px = static_cast<int>(rows);
-  for (const LitRay& ray : one.rays) all.rays.insert(all.rays.end(), rows, ray);
-  return all;
-}
-
 // Brightness that doubles between two steps as above, a quarter more of it from row to row: the
 // mean over rows as far to either side is that of the middle one, whatever its own stripe says. Six
 // rows, four widths, count; of 0.1 px in the sixth the mean of twelve has 3 (1.5 / 7)^2 / 2 / 12 or
@@ -198,11 +170,53 @@ TEST(StripeShifts, AreTheMeansOfTheRowsAround) {
   const StripeShift shift = stripe_shifts(sweep.frames, sweep.rays)[ray].value();
   EXPECT_TRUE(shift.is_known);
   EXPECT_NEAR(shift.shift_px, expected_px, 1e-9);
-  EXPECT_NEAR(shift.unknown_px, expected_px, 1e-9);
+  // Towards the step the logarithm rises by ln 2 over six columns and by no more over twelve: at
+  // its foot by (4 - 1) ln 2 / 12 a column and not by ln 2 / 12. So much less or more may be true.
+  EXPECT_NEAR(shift.unknown_px, 2 * expected_px, 1e-9);
   sweep.rays[ray - 6].column_px += 0.1;
   EXPECT_GT(std::abs(stripe_shifts(sweep.frames, sweep.rays)[ray]->shift_px - expected_px), 5e-4);
   std::swap(sweep.rays[ray - 6].column_px, sweep.rays[ray - 7].column_px);
   EXPECT_NEAR(stripe_shifts(sweep.frames, sweep.rays)[ray]->shift_px, expected_px, 1e-9);
+}
+
+// Brightness whose logarithm is a parabola of the place, as all three tell it: half a tenth a
+// column in the middle. At the sweep's ends, where a place or the one beyond is missing, nobody
+// asked says so.
+TEST(StripeShifts, OfASmoothBodyAreKnownWhereFourPlacesTellThem) {
+  const std::size_t rows = 5;
+  Sweep sweep = sweep_over_rows(25, rows);
+  for (std::size_t i = 0; i < sweep.rays.size(); ++i) {
+    const double from_middle = static_cast<double>(i / rows) - 12;
+    sweep.rays[i].height_e *= std::exp(0.1 * from_middle + 0.003 * from_middle * from_middle);
+  }
+  const auto shifts = stripe_shifts(sweep.frames, sweep.rays);
+  for (std::size_t step = 0; step < 25; ++step) {
+    const StripeShift shift = shifts[step * rows + 2].value();
+    EXPECT_NEAR(shift.shift_px, (0.05 + 0.003 * (static_cast<double>(step) - 12)) * 1.5 * 1.5,
+                1e-9);
+    const bool is_checked = step >= 6 && step <= 18;
+    EXPECT_NEAR(shift.unknown_px, is_checked ? 0 : std::abs(shift.shift_px), 1e-7) << step;
+  }
+}
+
+// By central differences of the shift, to their third order and to what the slope u = a p changes
+// by with the columns: the shift over its width, some 1 %.
+TEST(ShiftSlopes, AreThoseOfTheShift) {
+  const Body body{6, 0.02, 0.01};
+  const std::array<LitPlace, 3> places = {body.place(0), body.place(-4), body.place(5)};
+  const ShiftSlopes slopes = shift_slopes(places[0], places[1], places[2], 6);
+  constexpr double step = 1e-4;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto shift_px = [&](double columns, double log_heights) {
+      std::array<LitPlace, 3> moved = places;
+      moved[i].column_px += columns;
+      moved[i].height_e *= std::exp(log_heights);
+      return stripe_shift_px(moved[0], moved[1], moved[2], 6);
+    };
+    EXPECT_NEAR((shift_px(step, 0) - shift_px(-step, 0)) / (2 * step), slopes.by_column[i], 5e-3);
+    EXPECT_NEAR((shift_px(0, step) - shift_px(0, -step)) / (2 * step), slopes.by_log_height_px[i],
+                1e-6);
+  }
 }
 
 // Of a stripe that is broken off beside the row, and of the first row of an image, the own shift is

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The libscan authors
 // SPDX-License-Identifier: Apache-2.0
 // Whether points know their own uncertainty: mean normalised error squared (1 is honest) and the
-// share inside the stated 95 % interval, for each kind of scanner, target and light, over seeds.
+// share inside the stated 95 % interval, for each kind of scanner, target and light, over seeds;
+// then planes near and far and oblique.
 // Behind each the standard deviation of the mean, taken between seeds, since points of one scan may
 // share their errors; last the bias over the root mean square of the error along the ray. "+rim" is
 // the ball with the points whose windows look past its rim, which stereo's edge margin drops.
@@ -41,7 +42,7 @@ void study(const StatedScanner& of, std::size_t seeds) {
     points += static_cast<double>(measurement(figures, "range_error_within_95").count);
   }
   const Spread square = spread_of(squares), share = spread_of(shares), bias = spread_of(biases);
-  std::printf("%-11s %-6s %5.1f %9.0f   %6.3f +- %.3f   %6.2f +- %.2f %%   %6.3f\n",
+  std::printf("%-11s %-13s %5.1f %9.0f   %6.3f +- %.3f   %6.2f +- %.2f %%   %6.3f\n",
               of.device.c_str(), of.target.c_str(), of.light, points, square.mean, square.of_mean,
               100 * share.mean, 100 * share.of_mean, bias.mean);
   std::fflush(stdout);
@@ -53,6 +54,8 @@ void study(const StatedScanner& of, std::size_t seeds) {
 int main(int argc, char** argv) {
   const std::size_t seeds = argc > 1 ? std::max(2ul, std::strtoul(argv[1], nullptr, 10)) : 20;
   std::printf(
-      "scanner     target light    points   e' C^-1 e          inside 95 %%        bias/rms\n");
+      "scanner     target        light    points   e' C^-1 e          inside 95 %%        "
+      "bias/rms\n");
   for (const auto& scanner : scan::synth::stated_scanners()) scan::synth::study(scanner, seeds);
+  for (const auto& scanner : scan::synth::stated_poses()) scan::synth::study(scanner, seeds);
 }

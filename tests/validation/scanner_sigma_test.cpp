@@ -128,18 +128,35 @@ TEST(StereoPairSigma, IsThatOfTheErrors) {
 }
 
 // Between 93 and 97 % of the points lie inside their own 95 % interval, over four seeds of every
-// kind of scanner before a plane and a ball in its usual light. Some 6,000 points or more, so the
-// share is known to sqrt(0.95 * 0.05 / 6000) = 0.3 %; those of stereo share windows of 7 x 7 px, so
-// 1400 windows, 0.6 %. Not the stereo pair's ball with its rim: windows that look past the rim are
-// off by up to half a pixel, which sigma does not know.
+// kind of scanner before a plane and a ball in a fifth of its usual light, in that and in five
+// times as much. Some 4,600 points or more, so the share is known to sqrt(0.95 * 0.05 / 4600) = 0.3
+// %; those of stereo share windows of 7 x 7 px, so 600 windows, 0.9 %. Not the stereo pair's ball
+// with its rim: windows that look past the rim are off by up to half a pixel, which sigma does not
+// know.
+void expect_interval(const StatedScanner& scanner) {
+  double share = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4})
+    share += figure(stated_figures(scanner, seed), "range_error_within_95") / 4;
+  const std::string which =
+      scanner.device + ", " + scanner.target + ", light " + std::to_string(scanner.light);
+  EXPECT_GT(share, 0.93) << which;
+  EXPECT_LT(share, 0.97) << which;
+}
+
 TEST(ScannerSigma, HoldsItsInterval) {
-  for (const StatedScanner& scanner : stated_scanners()) {
-    if (scanner.light != 1 || scanner.target == "+rim") continue;
-    double share = 0;
-    for (const std::uint64_t seed : {1, 2, 3, 4})
-      share += figure(stated_figures(scanner, seed), "range_error_within_95") / 4;
-    EXPECT_GT(share, 0.93) << scanner.device << ", " << scanner.target;
-    EXPECT_LT(share, 0.97) << scanner.device << ", " << scanner.target;
+  for (const StatedScanner& scanner : stated_scanners())
+    if (scanner.target != "+rim") expect_interval(scanner);
+}
+
+// The same of planes near and far and oblique. In a fifth of the light two are left out: the
+// lidar's faintest echoes, of which noise picks the third that it makes stronger than they are
+// (92.9 %), and a stripe 0.5 px wide, two rows to either side of which leave noise in what is
+// unknown of its shift (97.2 %).
+TEST(ScannerSigma, HoldsItsIntervalNearAndFarAndOblique) {
+  for (const StatedScanner& scanner : stated_poses()) {
+    const bool is_left_out =
+        scanner.light < 1 && (scanner.target == "25 m 0" || scanner.device == "laser line");
+    if (!is_left_out) expect_interval(scanner);
   }
 }
 
