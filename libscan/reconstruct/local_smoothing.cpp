@@ -21,6 +21,8 @@ constexpr double samples_per_region = 50, sigmas_per_region = 6;
 // decides. Each pass of around() spreads by a variance of half a region's width squared.
 constexpr double reach_in_lengths = 2;
 constexpr int most_passes = 64;
+// A sigma far below the others' would leave nothing to these.
+constexpr double least_share_of_sigma = 0.1;
 
 std::uint64_t key_of(const Eigen::Vector3i& cell) {
   return static_cast<std::uint64_t>(cell[2]) << 42 | static_cast<std::uint64_t>(cell[1]) << 21 |
@@ -73,6 +75,20 @@ LocalSmoothing::LocalSmoothing(const Samples& samples) : samples_(samples) {
   region_width_ = cell;
   risk_.assign(keys.size(), std::numeric_limits<double>::infinity());
   length_.assign(keys.size(), 1.0);
+  weigh();
+}
+
+void LocalSmoothing::weigh() {
+  const double least = least_share_of_sigma * median(samples_.sigma);
+  weight_.assign(samples_.points.size(), 1.0);
+  if (!(least > 0)) return;
+  for (std::size_t i = 0; i < weight_.size(); ++i)
+    weight_[i] = 1 / std::max(least, samples_.sigma[i]);
+  const std::vector<double> usual = mean_around(weight_);
+  for (std::size_t i = 0; i < weight_.size(); ++i) {
+    const double share = std::min(1.0, weight_[i] / usual[i]);
+    weight_[i] = share * share;
+  }
 }
 
 // Sums of each region and, at half weight an axis, of those around it.
@@ -128,7 +144,8 @@ double LocalSmoothing::judge(double trial, const std::vector<double>& residuals,
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const double sigma2 = samples_.sigma[i] * samples_.sigma[i];
     risk[region_of_[i]] +=
-        trust[i] * (residuals[i] * residuals[i] + 2 * sigma2 * leverage(samples_.area[i], trial));
+        weight_[i] * trust[i] *
+        (residuals[i] * residuals[i] + 2 * sigma2 * leverage(samples_.area[i], trial));
     counts[region_of_[i]] += 1;
   }
   for (std::size_t r = 0; r < risk.size(); ++r) gain[r] = risk_[r] - risk[r];

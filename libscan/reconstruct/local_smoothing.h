@@ -29,6 +29,10 @@ double posterior_variance(double area, double length);
 // tail and leave half of it, so the noise a fit takes up counts twice. That inflation keeps chance,
 // and scatter in position, which bends the fit more than linear theory says, from asking for
 // lengths that are too short.
+//
+// A sample that scatters more than those around counts less: min(1, (s / sigma)^2), 1 / s the mean
+// of 1 / sigma there. Weights that do not look at the residuals leave the sum a risk; without them
+// a few samples beside edges, whose squares' chance goes as sigma^4, drown what the others tell.
 class LocalSmoothing {
  public:
   explicit LocalSmoothing(const Samples& samples);
@@ -45,13 +49,15 @@ class LocalSmoothing {
   std::vector<double> lengths() const;
 
  private:
+  void weigh();
   std::vector<double> around(const std::vector<double>& sums) const;
 
   const Samples& samples_;
   std::vector<std::uint32_t> region_of_;
   std::vector<std::array<std::int32_t, 27>> neighbours_;
   double region_width_ = 0;
-  std::vector<double> risk_;  // sums over each region's samples
+  std::vector<double> weight_;  // per sample
+  std::vector<double> risk_;    // sums over each region's samples
   std::vector<double> length_;
 };
 

@@ -79,6 +79,23 @@ TEST(LocalSmoothing, ChoosesByRegion) {
   }
 }
 
+// Every tenth sample scatters a hundred times as much as the others, whose residuals fall by half a
+// sigma from the first trial to the second. To take up scatter costs 2 sigma^2 times the leverages'
+// difference, 2 (0.059 - 0.016) = 0.09 sigma^2 of theirs, which gain 0.75 sigma^2; evenly counted
+// the tenth would cost 0.1 * 1e4 * 0.09 sigma^2 = 90 sigma^2. With s = 1 / 0.901 they count 1.2e-4.
+TEST(LocalSmoothing, IsNotDrownedByFewThatScatterWidely) {
+  Samples samples = unit_square(100, 1e-3);
+  std::vector<double> before, after;
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    if (i % 10 == i / 100 % 10) samples.sigma[i] = 0.1;
+    before.push_back(samples.sigma[i]);
+    after.push_back(samples.sigma[i] < 0.1 ? 0.5e-3 : 0.1);
+  }
+  LocalSmoothing smoothing(samples);
+  smoothing.judge(0.035, before, all_trusted(samples));
+  EXPECT_EQ(smoothing.judge(0.0175, after, all_trusted(samples)), 1);
+}
+
 // What a region's own samples say by chance does not decide over a length that spans many regions:
 // one stripe (regions are 0.071 wide) that a trial makes worse, as much as its two neighbours gain,
 // keeps the old length if the trial is short and takes the new one if it is long.
