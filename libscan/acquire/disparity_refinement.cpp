@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "libscan/acquire/window_bias.h"
-#include "libscan/acquire/window_fit.h"
 #include "libscan/core/parallel.h"
 
 namespace scan::decoding {
@@ -18,6 +17,35 @@ namespace {
 
 constexpr double same_surface_px = 1;  // disparity step that ends a surface
 constexpr double farthest_move_px = 1;
+
+// Value and derivative at a place within a row; none outside [1, width - 2].
+struct Sample {
+  double value = 0;
+  double slope = 0;
+};
+
+bool sample(const Image<std::uint8_t>& image, double x, int row, Sample& result) {
+  if (!(x >= 1 && x < image.width - 2)) return false;
+  const int i = static_cast<int>(x);
+  const double t = x - i;
+  const double a = image(i - 1, row), b = image(i, row), c = image(i + 1, row),
+               d = image(i + 2, row);
+  const double p1 = c - a, p2 = 2 * a - 5 * b + 4 * c - d, p3 = 3 * (b - c) + d - a;
+  result.value = b + 0.5 * t * (p1 + t * (p2 + t * p3));
+  result.slope = 0.5 * (p1 + t * (2 * p2 + t * 3 * p3));
+  return true;
+}
+
+double slope_of(const Image<std::uint8_t>& image, int column, int row) {
+  const int before = std::max(0, column - 1), after = std::min(image.width - 1, column + 1);
+  return 0.5 * (image(after, row) - image(before, row));
+}
+
+// One pixel of the window: where it is, and its share of the disparity's slope.
+struct WindowPixel {
+  int column, row;
+  double offset_px;  // disparity here minus disparity at the centre
+};
 
 // Slope of the disparity by least squares over the same surface in a window of twice the reach.
 Eigen::Vector2d slope_at(const Image<float>& disparity, int column, int row, int reach) {
@@ -50,28 +78,80 @@ std::vector<WindowPixel> window_at(const Image<float>& disparity, int column, in
   return window;
 }
 
+// Sums over the window at disparity d, brightness difference eliminated.
+struct Fit {
+  int count = 0;
+  double residual = 0;     // sum of squares
+  double slopes2 = 0;      // sum of squared slopes of the right image
+  double texture = 0;      // sum of left slope times right slope: free of the noise in the slopes
+  double gradient = 0;     // sum of residual times slope
+  double correlation = 0;  // of the two windows, -1 to 1
+};
+
+Fit fit_at(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+           const std::vector<WindowPixel>& window, double d) {
+  Fit fit;
+  double e = 0, e2 = 0, g = 0, g2 = 0, eg = 0, h = 0, gh = 0;
+  double l = 0, l2 = 0, r = 0, r2 = 0;
+  for (const WindowPixel& pixel : window) {
+    Sample seen;
+    if (!sample(right, pixel.column - d - pixel.offset_px, pixel.row, seen)) continue;
+    const double grey = left(pixel.column, pixel.row);
+    const double error = grey - seen.value;
+    l += grey;
+    l2 += grey * grey;
+    r += seen.value;
+    r2 += seen.value * seen.value;
+    const double left_slope = slope_of(left, pixel.column, pixel.row);
+    ++fit.count;
+    e += error;
+    e2 += error * error;
+    g += seen.slope;
+    g2 += seen.slope * seen.slope;
+    eg += error * seen.slope;
+    h += left_slope;
+    gh += left_slope * seen.slope;
+  }
+  if (fit.count == 0) return fit;
+  fit.residual = std::max(0.0, e2 - e * e / fit.count);
+  fit.slopes2 = std::max(0.0, g2 - g * g / fit.count);
+  fit.texture = std::max(0.0, gh - g * h / fit.count);
+  fit.gradient = eg - e * g / fit.count;
+  const double left2 = l2 - l * l / fit.count, right2 = r2 - r * r / fit.count;
+  if (left2 > 0 && right2 > 0)
+    fit.correlation = (left2 + right2 - fit.residual) / (2 * std::sqrt(left2 * right2));
+  return fit;
+}
+
 struct Refined {
   double disparity_px;
   double sigma_px;
+  double correlation;
 };
 
-// Newton steps on weight * residual / noise + (d - start)^2 * prior with the weight that makes the
-// curvature of the first the information; returns d, `fit` is the one there.
-double descend(const Smoothed& images, const std::vector<WindowPixel>& window, double start,
-               double d, double prior, Fit& fit) {
-  const double weight =
-      fit.texture > 0 ? information(fit, correlated_at(images, window, d)) * fit.noise / fit.texture
-                      : 0;
+// Of the disparity that minimises the residual. Noise in the slopes adds to slopes2 but not to the
+// texture T: with the variance s^2 of the residuals the estimate has the variance s^2 slopes2 /
+// T^2.
+double information(const Fit& fit) {
+  constexpr double rounding_variance = 1.0 / 6;  // two images, 1/12 each
+  const double noise2 = std::max(fit.residual / (fit.count - 2), rounding_variance);
+  return fit.slopes2 > 0 ? fit.texture * fit.texture / (fit.slopes2 * noise2) : 0;
+}
+
+// Newton steps on residual * information / slopes2 + (d - start)^2 * prior; returns d, `fit` is the
+// one there.
+double descend(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+               const std::vector<WindowPixel>& window, double start, double d, double prior,
+               Fit& fit) {
+  const double weight = fit.slopes2 > 0 ? information(fit) / fit.slopes2 : 0;
   const auto cost = [&](const Fit& at, double x) {
-    return weight * at.residual / at.noise + prior * (x - start) * (x - start);
+    return at.residual * weight + prior * (x - start) * (x - start);
   };
   for (int iteration = 0; iteration < 8; ++iteration) {
-    const double gradient =
-        (fit.gradient - fit.residual * fit.noise_slope / (2 * fit.noise)) / fit.noise;
     const double trial =
-        d - (gradient * weight + prior * (d - start)) / (fit.slopes2 / fit.noise * weight + prior);
+        d - (fit.gradient * weight + prior * (d - start)) / (fit.slopes2 * weight + prior);
     if (!(std::abs(trial - start) <= farthest_move_px)) break;
-    const Fit next = fit_at(images, window, trial);
+    const Fit next = fit_at(left, right, window, trial);
     if (next.count < fit.count || !(cost(next, trial) < cost(fit, d))) break;
     const double move = std::abs(trial - d);
     d = trial;
@@ -81,15 +161,15 @@ double descend(const Smoothed& images, const std::vector<WindowPixel>& window, d
   return d;
 }
 
-Refined refine_pixel(const Smoothed& images, const std::vector<WindowPixel>& window, double start,
-                     double match_sigma_px) {
+Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+                     const std::vector<WindowPixel>& window, double start, double match_sigma_px) {
   const double prior = 1 / (match_sigma_px * match_sigma_px);
-  Fit fit = fit_at(images, window, start);
-  if (fit.count < 6) return {start, match_sigma_px};
+  Fit fit = fit_at(left, right, window, start);
+  if (fit.count < 6) return {start, match_sigma_px, fit.correlation};
   // Twice: the first residual holds the error of the start besides the noise.
-  double d = descend(images, window, start, start, prior, fit);
-  d = descend(images, window, start, d, prior, fit);
-  return {d, 1 / std::sqrt(information(fit, correlated_at(images, window, d)) + prior)};
+  double d = descend(left, right, window, start, start, prior, fit);
+  d = descend(left, right, window, start, d, prior, fit);
+  return {d, 1 / std::sqrt(information(fit) + prior), fit.correlation};
 }
 
 // The noise of the places that tell the curvature is little beside what the pixel's own gains.
@@ -109,29 +189,20 @@ void take_away_window_bias(RefinedDisparity& refined, int half) {
 
 RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                         const Image<float>& disparity_px, int block_px, double match_sigma_px) {
-  // The matcher's steps make slopes wrong by some hundredths, and uneven texture makes errors of
-  // them: windows take their slopes from disparities once refined.
-  constexpr int passes = 2;
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   RefinedDisparity result{disparity_px, Image<float>(left.width, left.height, unknown),
                           Image<float>(left.width, left.height, unknown)};
   const int half = refinement_window_px(block_px) / 2;
-  const Image<float> left_grey = in_floats(left), right_grey = in_floats(right);
-  const Smoothed images = smoothed(left_grey, right_grey);
-  for (int pass = 0; pass < passes; ++pass) {
-    const Image<float> shape = result.disparity_px;
-    parallel_for(disparity_px.pixels.size(), [&](std::size_t i) {
-      const double start = disparity_px.pixels[i];
-      if (std::isnan(start)) return;
-      const int column = static_cast<int>(i % left.width), row = static_cast<int>(i / left.width);
-      const std::vector<WindowPixel> window = window_at(shape, column, row, half);
-      const Refined refined = refine_pixel(images, window, start, match_sigma_px);
-      result.disparity_px.pixels[i] = static_cast<float>(refined.disparity_px);
-      result.sigma_px.pixels[i] = static_cast<float>(refined.sigma_px);
-      result.correlation.pixels[i] =
-          static_cast<float>(correlation_at(left_grey, right_grey, window, refined.disparity_px));
-    });
-  }
+  parallel_for(disparity_px.pixels.size(), [&](std::size_t i) {
+    const double start = disparity_px.pixels[i];
+    if (std::isnan(start)) return;
+    const int column = static_cast<int>(i % left.width), row = static_cast<int>(i / left.width);
+    const Refined refined = refine_pixel(left, right, window_at(disparity_px, column, row, half),
+                                         start, match_sigma_px);
+    result.disparity_px.pixels[i] = static_cast<float>(refined.disparity_px);
+    result.sigma_px.pixels[i] = static_cast<float>(refined.sigma_px);
+    result.correlation.pixels[i] = static_cast<float>(refined.correlation);
+  });
   take_away_window_bias(result, half);
   return result;
 }

@@ -15,20 +15,18 @@ struct RefinedDisparity {
   Image<float> correlation;  // of the two windows at the disparity
 };
 
-// Newton's method on sum (L(x, y) - R(x - d(x, y), y) - c)^2 / V over a window about each pixel
-// (Lucas and Kanade 1981), c the images' difference in brightness, both images smoothed by
-// (1, 2, 1) / 4 along the rows (Pan 2013), R between columns by cubic convolution (Keys 1981), V
-// the variance that the pixels' noise has in such a difference: between columns less is left of it,
-// so that without V noise draws disparities there (Wang, Sutton, Bruck and Schreier 2009). Within
-// the window d follows the slope of the disparity map, in a second pass that of the refined one,
-// and only pixels of the same surface count. The matcher's own disparity counts as a measurement of
-// sigma `match_sigma_px`, which decides where there is no texture. The result stays within 1 px of
-// it and moves only to lower the sum. At last what the window is off on a curved surface
-// (window_bias.h) is taken away.
+// Newton's method on sum (L(x, y) - R(x - d(x, y), y) - c)^2 over a window about each pixel (Lucas
+// and Kanade 1981), c the images' difference in brightness, R between columns by cubic convolution
+// (Keys 1981). Within the window d follows the slope of the disparity map, and only pixels of the
+// same surface count. The matcher's own disparity counts as a measurement of sigma
+// `match_sigma_px`, which decides where there is no texture. The result stays within 1 px of it and
+// moves only to lower the sum. At last what the window is off on a curved surface (window_bias.h)
+// is taken away.
 //
-// sigma: 1 / sigma^2 = I + 1 / match_sigma_px^2, I by the scene's slopes, in which the pixels'
-// noise is none, and the variance of a pixel, from the residuals, never below its rounding
-// (window_fit.h). It holds the images' noise, not a calibration error. Width of that window, px.
+// sigma: 1 / sigma^2 = sum R'^2 / s^2 + 1 / match_sigma_px^2 with the variance s^2 of the
+// residuals, never below the rounding of both images (1/6). It holds the images' noise, not a
+// calibration error.
+// Width of that window, px.
 inline int refinement_window_px(int block_px) {
   return 2 * (block_px / 2 + 1) + 1;
 }
