@@ -19,7 +19,7 @@ namespace {
 // In two dimensions a biweight of reach R passes 48 J_3(k R) / (k R)^3 of a wave of number k: half
 // at k R = 3.2, as the fit at k length = 1 (local_smoothing.h). Lengths are short along creases,
 // where an average that stops there need not be: the upper quartile of all speaks for the flanks.
-constexpr double reach_in_lengths = 3.2, quantile = 0.75;
+constexpr double reach_in_lengths = 3.2, upper = 0.75;
 // Shorter ones leave a thin plate's sheets rough.
 constexpr double least_reach_spacings = 6;
 // Curved faces want shorter ones. With 0.1 % noise the full reach, its 1/sqrt(2) and half of it
@@ -52,10 +52,7 @@ double reach_in_spacings(const Samples& samples, const FittedSamples& fit) {
   std::vector<double> lengths;
   for (std::size_t i = 0; i < fit.length.size(); ++i)
     lengths.push_back(fit.length[i] / std::sqrt(samples.area[i]));
-  const auto at = lengths.begin() +
-                  static_cast<std::ptrdiff_t>(quantile * static_cast<double>(lengths.size() - 1));
-  std::nth_element(lengths.begin(), at, lengths.end());
-  return std::max(least_reach_spacings, reach_in_lengths * *at);
+  return std::max(least_reach_spacings, reach_in_lengths * quantile(std::move(lengths), upper));
 }
 
 class BilateralFilter {

@@ -47,8 +47,8 @@ struct Verdict {
 
 // Attaches limits to the measurements of the same name; a measurement with several limits is listed
 // once for each. Throws scan::Error (input) for a limit whose name was not measured, with the
-// nearest name as a hint, and for a relation that is none of the four a limit that is NaN
-// and one within less than 0.
+// nearest name as a hint, and for a relation that is none of the four, a limit that is
+// NaN, and one "within" less than 0.
 Verdict judge(std::vector<Measurement> measurements, const std::vector<Limit>& limits);
 
 }  // namespace scan

@@ -127,6 +127,10 @@ TEST(StereoPairSigma, IsThatOfTheErrors) {
   EXPECT_NEAR(errors.mean, 0, 5 / std::sqrt(windows));
 }
 
+bool is_dim_stereo(const StatedScanner& scanner) {
+  return scanner.device == "stereo" && scanner.light < 1;
+}
+
 // Between 93 and 97 % of the points lie inside their own 95 % interval, over four seeds of every
 // kind of scanner before a plane and a ball in a fifth of its usual light, in that and in five
 // times as much. Some 4,600 points or more, so the share is known to sqrt(0.95 * 0.05 / 4600) = 0.3
@@ -134,10 +138,6 @@ TEST(StereoPairSigma, IsThatOfTheErrors) {
 // with its rim: windows that look past the rim are off by up to half a pixel, which sigma does not
 // know. Nor stereo in a fifth of the light, which is too modest (98 %): noise in the windows'
 // slopes counts there, too.
-bool is_dim_stereo(const StatedScanner& scanner) {
-  return scanner.device == "stereo" && scanner.light < 1;
-}
-
 void expect_interval(const StatedScanner& scanner) {
   double share = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4})
