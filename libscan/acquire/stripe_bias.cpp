@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libscan/acquire/stripe_rim.h"
+#include "libscan/acquire/stripe_walk.h"
 #include "libscan/core/parallel.h"
 
 namespace scan::decoding {
@@ -21,63 +23,6 @@ constexpr double cut_share = 0.15;
 // A normal distribution cut c widths from its centre has the width 0.79 at c = 1, 0.60 at 0 and
 // 0.45 if but the tail from one width on is left; its mean is off by 0.29, 0.80 and 1.53.
 constexpr double whole_share = 0.8;
-
-// The place of another step's ray as the camera of this step sees it.
-std::optional<LitPlace> place_of(const StripeImages& frames, std::size_t step, const LitRay& ray) {
-  const LaserLineCalibration& calibration = frames.calibration;
-  const Eigen::Vector3d x = frames.scanner_from_camera[step].inverse() * ray.point;
-  const auto pixel = project(calibration.camera, x);
-  if (!pixel) return std::nullopt;
-  return LitPlace{calibration.plane_normal.dot(x) - calibration.plane_offset_m, pixel->x(),
-                  ray.height_e, ray.width_px, ray.sigma_px};
-}
-
-// Steps of one row are looked at in one direction until a place is far enough away. None if the
-// body ends before.
-class Walk {
- public:
-  Walk(const StripeImages& frames, std::span<const LitRay> rays, std::size_t ray)
-      : frames_(frames),
-        rays_(rays),
-        rows_(static_cast<std::size_t>(frames.calibration.camera.height_px)),
-        step_(ray / rows_),
-        row_(ray % rows_) {}
-
-  // From `at` on (steps away, signed); moves it to the step found. At the end of the sweep it is
-  // moved beyond.
-  std::optional<LitPlace> next(long& at, long direction, double least_px) const {
-    const LitRay& here = rays_[step_ * rows_ + row_];
-    for (; is_step(at); at += direction) {
-      const LitRay& there = rays_[index(at)];
-      if (!(there.width_px > 0)) return std::nullopt;
-      const auto place = place_of(frames_, step_, there);
-      if (!place) return std::nullopt;
-      if (std::abs(place->column_px - here.column_px) >= least_px) return place;
-    }
-    return std::nullopt;
-  }
-  // How far a step moves the body's place in the image.
-  double moves_px(long at) const {
-    const LitRay& here = rays_[step_ * rows_ + row_];
-    if (!is_step(at)) return 0;
-    const auto place =
-        place_of(frames_, static_cast<std::size_t>(static_cast<long>(step_) + at), here);
-    return place ? std::abs(place->column_px - here.column_px) : 0;
-  }
-  bool is_step(long at) const {
-    const long step = static_cast<long>(step_) + at;
-    return step >= 0 && step < static_cast<long>(frames_.images.size());
-  }
-
- private:
-  std::size_t index(long at) const {
-    return static_cast<std::size_t>(static_cast<long>(step_) + at) * rows_ + row_;
-  }
-
-  const StripeImages& frames_;
-  std::span<const LitRay> rays_;
-  std::size_t rows_, step_, row_;
-};
 
 }  // namespace
 
@@ -199,6 +144,7 @@ std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<co
   if (!one || !other) {
     const double whole_px = one ? one->width_px : other->width_px;
     if (here.width_px < whole_share * whole_px) return std::nullopt;
+    if (is_at_rim(walk, whole_px, one ? 1 : -1)) return std::nullopt;
     return perhaps_cut;
   }
   if (here.width_px < whole_share * std::min(one->width_px, other->width_px)) return std::nullopt;

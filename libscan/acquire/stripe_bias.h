@@ -9,18 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "libscan/core/raw_frames.h"
+#include "libscan/acquire/stripe_walk.h"
 
 namespace scan::decoding {
-
-// A place that the light plane met at this or another step, as this step's image sees it.
-struct LitPlace {
-  double offset_m = 0;  // from this step's light plane, along its normal
-  double column_px = 0;
-  double height_e = 0;  // of its own stripe
-  double width_px = 0;  // 1 sigma of it
-  double sigma_px = 0;  // of the column
-};
 
 // The stripe lights the places with offsets p by exp(-p^2 / (2 w^2)). Let u = a p + b p^2 be the
 // columns they are seen at and 1 + g p their brightness, by the parabolas through three places.
@@ -30,15 +21,6 @@ struct LitPlace {
 // places coincide.
 double stripe_shift_px(const LitPlace& here, const LitPlace& one, const LitPlace& other,
                        double width_px);
-
-// What was found at a ray: its point in the scanner frame and its stripe; no width: nothing.
-struct LitRay {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  double column_px = 0;
-  double width_px = 0;  // 1 sigma of the stripe
-  double height_e = 0;
-  double sigma_px = 0;  // of the column
-};
 
 // Something the places of stripes tell, and what their noise does to it.
 struct Told {
@@ -68,11 +50,12 @@ ShiftSlopes shift_slopes(const LitPlace& here, const LitPlace& one, const LitPla
 // Of `ray` (of step * rows + row), by places of the same row that are seen at least four widths
 // away. Where the body is not seen that far to one side the stripe may be cut: then 0.15 widths are
 // unknown, but none is returned if it has less than 0.8 of the width of the one on the other side,
-// as one that is cut within a width of its centre, or beside it: then its place is the edge's and
-// no longer the plane's. None as well if it has less than 0.8 of the width of either of two, whose
-// mean a stripe that is whole has nearly: a tail on an edge that the plane of light has passed,
-// another body behind. And none where steps a width and more apart see the body on neither side,
-// so that it may be such a tail; where the sweep stands still, or has no other step, 0.15.
+// as one that is cut within a width of its centre, or beside it, or if a round body's rim is near
+// (is_at_rim): then its place is the edge's and no longer the plane's. None as well if it has less
+// than 0.8 of the width of either of two, whose mean a stripe that is whole has nearly: a tail on
+// an edge that the plane of light has passed, another body behind. And none where steps a width and
+// more apart see the body on neither side, so that it may be such a tail; where the sweep stands
+// still, or has no other step, 0.15.
 std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<const LitRay> rays,
                                         std::size_t ray);
 
