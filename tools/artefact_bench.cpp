@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "libscan/core/error.h"
-#include "libscan/core/random.h"
 #include "synth/ray_caster.h"
 
 namespace scan {
@@ -26,14 +25,13 @@ bool is_counted(const synth::Scene& scene, const Pose& world_from_view, const Ra
 }
 
 void add(BodyPoints& body, const Pose& first_from_view, const Scan& scan, std::size_t i,
-         const RayTruth& truth, const synth::RenderAddress& address) {
+         const RayTruth& truth, const std::array<double, artefact_draws>& normals) {
   body.measured.push_back(first_from_view * scan.cloud.points[i]);
   if (scan.cloud.sigma_m.empty()) return;
   const Eigen::Vector3d along = truth.point_in_scanner.normalized();
-  RandomStream random(address.seed + 1, address.scan, scan.ray[i]);
-  for (Points& drawn : body.drawn) {
-    const double error_m = scan.cloud.sigma_m[i] * random.normal();
-    drawn.push_back(first_from_view * (truth.point_in_scanner + error_m * along));
+  for (std::size_t draw = 0; draw < artefact_draws; ++draw) {
+    const double error_m = scan.cloud.sigma_m[i] * normals[draw];
+    body.drawn[draw].push_back(first_from_view * (truth.point_in_scanner + error_m * along));
   }
 }
 
@@ -90,10 +88,12 @@ void Bench::scan_place(const synth::Scene& scene, const synth::EffectSet& effect
   const Scan scan = acquire(rendering.frames, recipe_.acquire);
   const auto rays = true_rays(recipe_.scanner, caster, world_from_view);
   const Pose first_from_view = world_from_scanner().inverse() * world_from_view;
+  const auto normals = shared_normals(scan, {address.seed + 1, address.scan});
   for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
     const RayTruth& truth = rays[scan.ray[i]];
     if (truth.object < 0 || !is_counted(scene, world_from_view, truth, counts)) continue;
-    add(bodies[static_cast<std::size_t>(truth.object)], first_from_view, scan, i, truth, address);
+    add(bodies[static_cast<std::size_t>(truth.object)], first_from_view, scan, i, truth,
+        normals[scan.ray[i]]);
   }
 }
 

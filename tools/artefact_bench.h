@@ -10,13 +10,13 @@
 #include "libscan/verify/artefacts.h"
 #include "tools/console.h"
 #include "tools/recipe.h"
+#include "tools/shared_normals.h"
 
 namespace scan {
 
-constexpr std::size_t artefact_draws = 7;
-
 // The points of one body at one place, as measured and as drawn around the true ones with the sigma
-// that the scan states (none where it states none); frame of the first viewpoint's scanner.
+// that the scan states, shared as its windows share noise (none where it states none); frame of the
+// first viewpoint's scanner.
 struct BodyPoints {
   Points measured;
   std::array<Points, artefact_draws> drawn;

@@ -12,7 +12,8 @@
 namespace scan {
 
 // `predicted`: the same figure of points drawn around the true ones with the sigma that the scan
-// itself states, independent and without bias; the median of seven draws. A measured figure far
+// itself states, shared by rays as its noise_window says and without bias; the median of seven
+// draws. A measured figure far
 // above it shows what that sigma leaves out. NaN where the scan states none. Drawn points lie where
 // the scan's own do, so that of the structural resolution is the limit of its sampling; what a
 // footprint or a matching window blurs stands above it.
