@@ -26,18 +26,26 @@ bool is_counted(const synth::Scene& scene, const Pose& world_from_view, const Ra
 }
 
 void add(BodyPoints& body, const Pose& first_from_view, const Scan& scan, std::size_t i,
-         const RayTruth& truth, const synth::RenderAddress& address) {
+         const RayTruth& truth, std::uint32_t number) {
   body.measured.push_back(first_from_view * scan.cloud.points[i]);
   if (scan.cloud.sigma_m.empty()) return;
   const Eigen::Vector3d along = truth.point_in_scanner.normalized();
-  RandomStream random(address.seed + 1, address.scan, scan.ray[i]);
-  for (Points& drawn : body.drawn) {
-    const double error_m = scan.cloud.sigma_m[i] * random.normal();
-    drawn.push_back(first_from_view * (truth.point_in_scanner + error_m * along));
-  }
+  body.stated.push_back({first_from_view * truth.point_in_scanner,
+                         scan.cloud.sigma_m[i] * (first_from_view.linear() * along), number,
+                         scan.ray[i]});
 }
 
 }  // namespace
+
+Points drawn_points(const BodyPoints& body, std::uint64_t seed, std::uint32_t draw) {
+  Points points;
+  points.reserve(body.stated.size());
+  for (const StatedPoint& stated : body.stated) {
+    RandomStream random(seed + 1, stated.scan, (std::uint64_t{draw} << 32) + stated.ray);
+    points.push_back(stated.truth + random.normal() * stated.sigma_m);
+  }
+  return points;
+}
 
 bool counts_anywhere(const synth::Object&, const Eigen::Vector3d&, const Eigen::Vector3d&) {
   return true;
@@ -93,7 +101,8 @@ void Bench::scan_place(const synth::Scene& scene, const synth::EffectSet& effect
   for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
     const RayTruth& truth = rays[scan.ray[i]];
     if (truth.object < 0 || !is_counted(scene, world_from_view, truth, counts)) continue;
-    add(bodies[static_cast<std::size_t>(truth.object)], first_from_view, scan, i, truth, address);
+    add(bodies[static_cast<std::size_t>(truth.object)], first_from_view, scan, i, truth,
+        address.scan);
   }
 }
 

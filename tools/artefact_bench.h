@@ -3,7 +3,7 @@
 // Where a data sheet's bodies stand before the scanner one after another.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,14 +13,22 @@
 
 namespace scan {
 
-constexpr std::size_t artefact_draws = 7;
+// Where a ray truly ended and how far off, 1 sigma along it, the scan states its point to be.
+struct StatedPoint {
+  Eigen::Vector3d truth, sigma_m;
+  std::uint32_t scan = 0, ray = 0;
+};
 
-// The points of one body at one place, as measured and as drawn around the true ones with the sigma
-// that the scan states (none where it states none); frame of the first viewpoint's scanner.
+// The points of one body at one place, as measured and as stated (none where the scan states no
+// sigma); frame of the first viewpoint's scanner.
 struct BodyPoints {
   Points measured;
-  std::array<Points, artefact_draws> drawn;
+  std::vector<StatedPoint> stated;
 };
+
+// What the scan might as well have measured if its sigmas were all of its error: points drawn
+// around the true ones, each by a stream of its own.
+Points drawn_points(const BodyPoints& body, std::uint64_t seed, std::uint32_t draw);
 
 // Whether a true point of a body counts, in the body's frame.
 using Counts = bool (*)(const synth::Object& body, const Eigen::Vector3d& at,
@@ -42,6 +50,7 @@ class Bench {
 
   const Pose& world_from_scanner() const { return viewpoints_.front(); }
   const std::vector<Pose>& viewpoints() const { return viewpoints_; }
+  std::uint64_t seed() const { return recipe_.seed; }
 
   // Per place, per body; from the first viewpoint, or from several and put together by their true
   // poses. Each scan has noise of its own. Throws scan::Error (computation) for a body with fewer

@@ -146,8 +146,9 @@ ordered_json sheet_json(const std::vector<SheetLine>& sheet, const Verdict& verd
   for (auto& measurement : json.at("measurements"))
     for (const SheetLine& line : sheet)
       if (line.measured.name == measurement.at("name"))
-        measurement["predicted"] =
-            std::isfinite(line.predicted) ? ordered_json(line.predicted) : ordered_json(nullptr);
+        measurement["predicted"] = line.predicted
+                                       ? ordered_json{line.predicted->low, line.predicted->high}
+                                       : ordered_json();
   return json;
 }
 
