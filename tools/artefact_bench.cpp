@@ -25,17 +25,29 @@ bool is_counted(const synth::Scene& scene, const Pose& world_from_view, const Ra
 }
 
 void add(BodyPoints& body, const Pose& first_from_view, const Scan& scan, std::size_t i,
-         const RayTruth& truth, const std::array<double, artefact_draws>& normals) {
+         const RayTruth& truth, std::uint32_t number) {
   body.measured.push_back(first_from_view * scan.cloud.points[i]);
   if (scan.cloud.sigma_m.empty()) return;
+  if (body.stated.empty() || body.stated.back().noise.scan != number)
+    body.stated.push_back({.noise = {number, scan.grid, scan.noise_window}});
+  StatedPoints& stated = body.stated.back();
   const Eigen::Vector3d along = truth.point_in_scanner.normalized();
-  for (std::size_t draw = 0; draw < artefact_draws; ++draw) {
-    const double error_m = scan.cloud.sigma_m[i] * normals[draw];
-    body.drawn[draw].push_back(first_from_view * (truth.point_in_scanner + error_m * along));
-  }
+  stated.truths.push_back(first_from_view * truth.point_in_scanner);
+  stated.sigmas_m.push_back(scan.cloud.sigma_m[i] * (first_from_view.linear() * along));
+  stated.rays.push_back(scan.ray[i]);
 }
 
 }  // namespace
+
+Points drawn_points(const BodyPoints& body, std::uint64_t seed, std::uint32_t draw) {
+  Points points;
+  for (const StatedPoints& stated : body.stated) {
+    const auto normals = shared_normals(stated.noise, stated.rays, seed + 1, draw);
+    for (std::size_t i = 0; i < normals.size(); ++i)
+      points.push_back(stated.truths[i] + normals[i] * stated.sigmas_m[i]);
+  }
+  return points;
+}
 
 bool counts_anywhere(const synth::Object&, const Eigen::Vector3d&, const Eigen::Vector3d&) {
   return true;
@@ -88,12 +100,11 @@ void Bench::scan_place(const synth::Scene& scene, const synth::EffectSet& effect
   const Scan scan = acquire(rendering.frames, recipe_.acquire);
   const auto rays = true_rays(recipe_.scanner, caster, world_from_view);
   const Pose first_from_view = world_from_scanner().inverse() * world_from_view;
-  const auto normals = shared_normals(scan, {address.seed + 1, address.scan});
   for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
     const RayTruth& truth = rays[scan.ray[i]];
     if (truth.object < 0 || !is_counted(scene, world_from_view, truth, counts)) continue;
     add(bodies[static_cast<std::size_t>(truth.object)], first_from_view, scan, i, truth,
-        normals[scan.ray[i]]);
+        address.scan);
   }
 }
 

@@ -3,7 +3,7 @@
 // Where a data sheet's bodies stand before the scanner one after another.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,13 +14,24 @@
 
 namespace scan {
 
-// The points of one body at one place, as measured and as drawn around the true ones with the sigma
-// that the scan states, shared as its windows share noise (none where it states none); frame of the
-// first viewpoint's scanner.
+// Where rays of one scan truly ended, and how far off, 1 sigma along each, the scan states its
+// points to be.
+struct StatedPoints {
+  Points truths, sigmas_m;
+  std::vector<std::uint32_t> rays;
+  RayNoise noise;
+};
+
+// The points of one body at one place, as measured and as stated by each scan (none where they
+// state no sigma); frame of the first viewpoint's scanner.
 struct BodyPoints {
   Points measured;
-  std::array<Points, artefact_draws> drawn;
+  std::vector<StatedPoints> stated;
 };
+
+// What the scans might as well have measured if their sigmas were all of their error: points drawn
+// around the true ones, by numbers shared as their windows share noise.
+Points drawn_points(const BodyPoints& body, std::uint64_t seed, std::uint32_t draw);
 
 // Whether a true point of a body counts, in the body's frame.
 using Counts = bool (*)(const synth::Object& body, const Eigen::Vector3d& at,
@@ -42,6 +53,7 @@ class Bench {
 
   const Pose& world_from_scanner() const { return viewpoints_.front(); }
   const std::vector<Pose>& viewpoints() const { return viewpoints_; }
+  std::uint64_t seed() const { return recipe_.seed; }
 
   // Per place, per body; from the first viewpoint, or from several and put together by their true
   // poses. Each scan has noise of its own. Throws scan::Error (computation) for a body with fewer

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -15,7 +14,7 @@
 #include "libscan/acquire/disparity_refinement.h"
 #include "libscan/acquire/window_bias.h"
 #include "libscan/core/error.h"
-#include "libscan/core/median.h"
+#include "libscan/core/parallel.h"
 #include "libscan/verify/artefacts.h"
 #include "libscan/verify/structural_resolution.h"
 #include "tools/artefact_bench.h"
@@ -23,26 +22,37 @@
 namespace scan {
 namespace {
 
-constexpr std::size_t most_views = 3, merged_places = 3, repetitions = 10;
+constexpr std::size_t most_views = 3, merged_places = 3, repetitions = 10, draws = 39;
 
 using Test = std::vector<std::vector<BodyPoints>>;  // per place, per body
-using Select = std::function<const Points&(const BodyPoints&)>;
+using Select = std::function<Points(const BodyPoints&)>;
 using Figures = std::function<std::vector<Measurement>(const Select&)>;
 
-// The figures of the measured points, and beside each the median of what the draws give.
-void add_lines(std::vector<SheetLine>& sheet, const Test& test, const Figures& figures) {
+Points measured_points(const BodyPoints& body) {
+  return body.measured;
+}
+
+// The figures of the measured points, and beside each what the draws give.
+void add_lines(std::vector<SheetLine>& sheet, const Bench& bench, const Test& test,
+               const Figures& figures) {
   const std::size_t first = sheet.size();
-  const Select measured = [](const BodyPoints& body) -> const Points& { return body.measured; };
-  for (Measurement& measurement : figures(measured))
-    sheet.push_back({std::move(measurement), std::numeric_limits<double>::quiet_NaN()});
-  if (test.front().front().drawn.front().empty()) return;
-  std::vector<std::vector<double>> drawn(sheet.size() - first);
-  for (std::size_t draw = 0; draw < artefact_draws; ++draw) {
-    const auto of_draw =
-        figures([&](const BodyPoints& b) -> const Points& { return b.drawn[draw]; });
-    for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i].push_back(of_draw[i].value);
+  for (Measurement& measurement : figures(measured_points))
+    sheet.push_back({std::move(measurement)});
+  if (test.front().front().stated.empty()) return;
+  std::vector<std::vector<double>> drawn(sheet.size() - first, std::vector<double>(draws));
+  parallel_for(
+      draws,
+      [&](std::size_t draw) {
+        const auto of_draw = figures([&](const BodyPoints& body) {
+          return drawn_points(body, bench.seed(), static_cast<std::uint32_t>(draw));
+        });
+        for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i][draw] = of_draw[i].value;
+      },
+      1);
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const auto [least, most] = std::minmax_element(drawn[i].begin(), drawn[i].end());
+    sheet[first + i].predicted = Interval{*least, *most};
   }
-  for (std::size_t i = 0; i < drawn.size(); ++i) sheet[first + i].predicted = median(drawn[i]);
 }
 
 std::vector<Points> first_bodies(const Test& test, const Select& select) {
@@ -64,11 +74,11 @@ Pose in_scanner(const Bench& bench, const synth::Object& body) {
 void test_balls(std::vector<SheetLine>& sheet, Bench& bench, const synth::Artefacts& sized) {
   const Test balls =
       bench.scanned("balls", ball_places(sized, bench.world_from_scanner()), counts_anywhere);
-  add_lines(sheet, balls, [&](const Select& select) {
+  add_lines(sheet, bench, balls, [&](const Select& select) {
     return probing_errors(first_bodies(balls, select), sized.ball_diameter_m);
   });
   const auto places = ball_places(sized, bench.world_from_scanner());
-  add_lines(sheet, balls, [&](const Select& select) {
+  add_lines(sheet, bench, balls, [&](const Select& select) {
     std::vector<PlacedBall> placed;
     for (std::size_t i = 0; i < balls.size(); ++i)
       placed.push_back({select(balls[i][0]), in_scanner(bench, places[i].front()).translation()});
@@ -76,7 +86,7 @@ void test_balls(std::vector<SheetLine>& sheet, Bench& bench, const synth::Artefa
   });
   const Test bars =
       bench.scanned("ball bars", bar_places(sized, bench.world_from_scanner()), counts_anywhere);
-  add_lines(sheet, bars, [&](const Select& select) {
+  add_lines(sheet, bench, bars, [&](const Select& select) {
     return spacing_errors(ball_bars(bars, select), sized.bar_length_m);
   });
 }
@@ -96,7 +106,7 @@ void test_merged_views(std::vector<SheetLine>& sheet, Bench& bench, const synth:
   const Test bars =
       bench.scanned("ball bars, merged", some(bar_places(sized, bench.world_from_scanner())),
                     counts_anywhere, views);
-  add_lines(sheet, balls, [&](const Select& select) {
+  add_lines(sheet, bench, balls, [&](const Select& select) {
     auto figures = probing_errors(first_bodies(balls, select), sized.ball_diameter_m);
     const auto spacing = spacing_errors(ball_bars(bars, select), sized.bar_length_m);
     figures.insert(figures.end(), spacing.begin(), spacing.end());
@@ -115,7 +125,7 @@ void test_repeatability(std::vector<SheetLine>& sheet, Bench& bench,
       "balls, again", repeated(ball_places(sized, bench.world_from_scanner())), counts_anywhere);
   const Test bars = bench.scanned(
       "ball bars, again", repeated(bar_places(sized, bench.world_from_scanner())), counts_anywhere);
-  add_lines(sheet, balls, [&](const Select& select) {
+  add_lines(sheet, bench, balls, [&](const Select& select) {
     std::vector<double> sizes_m, spacings_m;
     for (const auto& place : balls)
       sizes_m.push_back(probing_errors(std::vector<Points>{select(place[0])}, sized.ball_diameter_m)
@@ -131,12 +141,12 @@ void test_repeatability(std::vector<SheetLine>& sheet, Bench& bench,
 void test_faces(std::vector<SheetLine>& sheet, Bench& bench, const synth::Artefacts& sized) {
   const Test plates = bench.scanned("plates", plate_places(sized, bench.world_from_scanner()),
                                     counts_on_inner_face);
-  add_lines(sheet, plates,
+  add_lines(sheet, bench, plates,
             [&](const Select& select) { return flatness_errors(first_bodies(plates, select)); });
   const auto places = plate_places(sized, bench.world_from_scanner());
-  add_lines(sheet, plates, [&](const Select& select) {
-    std::vector<PlacedPlate> placed;  // the first three stand one behind the other
-    for (std::size_t i = 0; i < 3; ++i) {
+  add_lines(sheet, bench, plates, [&](const Select& select) {
+    std::vector<PlacedPlate> placed;  // the first three, the nearest last, in a line
+    for (const std::size_t i : {2, 1, 0}) {
       const Pose plate = in_scanner(bench, places[i].front());
       const double half_m =
           std::get<BoxShape>(std::get<Shape>(places[i].front().geometry)).size_m.z() / 2;
@@ -146,7 +156,7 @@ void test_faces(std::vector<SheetLine>& sheet, Bench& bench, const synth::Artefa
   });
   const Test steps =
       bench.scanned("steps", step_places(sized, bench.world_from_scanner()), counts_on_inner_face);
-  add_lines(sheet, steps, [&](const Select& select) {
+  add_lines(sheet, bench, steps, [&](const Select& select) {
     std::vector<Step> pairs;
     for (const auto& place : steps) pairs.push_back({select(place[0]), select(place[1])});
     return step_errors(pairs, sized.step_m);
@@ -157,7 +167,7 @@ void test_cylinders(std::vector<SheetLine>& sheet, Bench& bench, const synth::Ar
   const Pose& world_from_scanner = bench.world_from_scanner();
   const auto places = cylinder_places(sized, world_from_scanner);
   const Test cylinders = bench.scanned("cylinders", places, counts_on_mantle);
-  add_lines(sheet, cylinders, [&](const Select& select) {
+  add_lines(sheet, bench, cylinders, [&](const Select& select) {
     std::vector<CylinderPlace> measured;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const Pose pose = in_scanner(bench, places[i].front());
@@ -187,12 +197,12 @@ WavePlate wave_plate(const WaveSeries& series, std::size_t i, const synth::Artef
   return plate;
 }
 
-bool last_is_resolved(const WaveSeries& series, const synth::Artefacts& sized) {
+bool last_is_resolved(const WaveSeries& series, const synth::Artefacts& sized, std::uint64_t seed) {
   const auto resolves = [&](const Select& select) {
     return is_resolved(wave_response(wave_plate(series, series.bodies.size() - 1, sized, select)));
   };
-  return resolves([](const BodyPoints& b) -> const Points& { return b.measured; }) ||
-         resolves([](const BodyPoints& b) -> const Points& { return b.drawn.front(); });
+  return resolves(measured_points) ||
+         resolves([&](const BodyPoints& body) { return drawn_points(body, seed, 0); });
 }
 
 // What the scanner's way of reading its images leaves of waves of a period at a depth: the windows
@@ -204,17 +214,19 @@ double reading_transfer(const Recipe& recipe, double period_m, double depth_m) {
   return decoding::window_transfer(period_m * pair->calibration.focal_px / depth_m, window_px / 2);
 }
 
-// Draws know the noise of each ray alone: takes from their waves what the reading does.
-void flatten_draws(const Recipe& recipe, WaveSeries& series) {
+// Draws know the noise of each ray alone: takes from the waves they lie about what the reading
+// does.
+void flatten_truth(const Recipe& recipe, WaveSeries& series) {
   const double period_m = series.periods_m.back(),
                height_m = synth::wave_amplitude_m(period_m) *
                           (1 - reading_transfer(recipe, period_m,
                                                 series.scanner_from_plate.translation().z()));
   const Pose plate_from_scanner = series.scanner_from_plate.inverse();
   const Eigen::Vector3d up = series.scanner_from_plate.linear().col(2);
-  for (Points& draw : series.bodies.back().drawn)
-    for (Eigen::Vector3d& x : draw)
-      x -= height_m * std::cos(2 * std::numbers::pi * (plate_from_scanner * x).x() / period_m) * up;
+  for (StatedPoints& stated : series.bodies.back().stated)
+    for (Eigen::Vector3d& truth : stated.truths)
+      truth -= height_m * up *
+               std::cos(2 * std::numbers::pi * (plate_from_scanner * truth).x() / period_m);
 }
 
 WaveSeries wave_series(const Recipe& recipe, Bench& bench, const synth::Artefacts& sized,
@@ -227,8 +239,8 @@ WaveSeries wave_series(const Recipe& recipe, Bench& bench, const synth::Artefact
     series.scanner_from_plate = in_scanner(bench, plate.front());
     series.periods_m.push_back(period_m);
     series.bodies.push_back(bench.scanned(test, {plate}, counts_anywhere)[0][0]);
-    flatten_draws(recipe, series);
-    if (!last_is_resolved(series, sized)) break;
+    flatten_truth(recipe, series);
+    if (!last_is_resolved(series, sized, bench.seed())) break;
   }
   return series;
 }
@@ -237,7 +249,7 @@ void test_waves(std::vector<SheetLine>& sheet, const Recipe& recipe, Bench& benc
                 const synth::Artefacts& sized) {
   const std::array series = {wave_series(recipe, bench, sized, synth::WaveAxis::x),
                              wave_series(recipe, bench, sized, synth::WaveAxis::y)};
-  add_lines(sheet, {series[0].bodies}, [&](const Select& select) {
+  add_lines(sheet, bench, {series[0].bodies}, [&](const Select& select) {
     std::array<std::vector<WavePlate>, 2> plates;
     for (std::size_t k = 0; k < series.size(); ++k)
       for (std::size_t i = 0; i < series[k].bodies.size(); ++i)

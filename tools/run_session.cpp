@@ -92,6 +92,16 @@ Recipe adjusted(Recipe recipe, const RunSettings& settings) {
   return recipe;
 }
 
+// No stage needs the seconds of those before it: where they cannot be read, they begin anew.
+void drop_broken_timings(const fs::path& run, Console& console) {
+  try {
+    (void)read_or_empty(run / "timings.json");
+  } catch (const Error& error) {
+    console.warn(std::string(error.what()) + "; dropped, what earlier stages cost is unknown");
+    fs::remove(run / "timings.json");
+  }
+}
+
 double rays_of(const ordered_json& scans) {
   double rays = 0;
   for (const auto& scan : scans) rays += scan.at("rays").get<double>();
@@ -117,6 +127,7 @@ RunSession::RunSession(const fs::path& recipe, const fs::path& run, const RunSet
       settings_(settings) {
   const std::string as_run = json_text(to_json(recipe_));
   folder_ = open_folder(run_, settings, as_run);
+  drop_broken_timings(run_, console_);
   write_file(recipe_path(run_), as_run);
   inputs_ = fingerprint(as_run + version_text() + (settings.keep_raw ? " raw" : ""));
 }
@@ -176,9 +187,9 @@ int RunSession::finish(const std::string& command, const ordered_json& more, boo
     result["scans"].push_back(scan_json("scans/" + scan_name(i) + ".ply", scans[i]));
   result["effects"] = read_or_empty(run_ / "effects.json");
   const ordered_json timings = read_or_empty(run_ / "timings.json");
-  const ordered_json costs = timings.value("effects", ordered_json());
+  const ordered_json costs = timings.value("effects", ordered_json::object());
   for (auto& effect : result["effects"])
-    effect["cost_s"] = costs.value(effect.value("effect", ""), 0.0);
+    effect["cost_s"] = costs.value(effect.value("effect", ""), ordered_json());
   const ordered_json simulation = read_or_empty(run_ / "simulation.json");
   for (const auto& [key, value] : simulation.items()) result[key] = value;
   if (const double seconds = timings.value("simulate", 0.0); seconds > 0)

@@ -3,26 +3,25 @@
 // Chance as a scan states it: shared by the rays that share noise.
 #pragma once
 
-#include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
-#include "libscan/core/random.h"
 #include "libscan/core/scan.h"
 
 namespace scan {
 
-constexpr std::size_t artefact_draws = 7;
-
-// Where a scan's random numbers come from.
-struct NoiseAddress {
-  std::uint64_t seed = 0;
+// Which rays of a scan share noise, and the scan's number, by which its random numbers are
+// addressed.
+struct RayNoise {
   std::uint32_t scan = 0;
+  RayGrid grid;
+  RayGrid window{1, 1};  // see Scan::noise_window
 };
 
-// For each ray of the scan's grid several standard normal numbers, those of one draw correlated as
-// its noise_window says. Of a scan whose rays have noise of their own, or no grid, for each ray up
-// to the last one that has a point.
-std::vector<std::array<double, artefact_draws>> shared_normals(const Scan& scan,
-                                                               const NoiseAddress& address);
+// A standard normal number for each of the rays, correlated as the window says; independent for
+// another seed, scan or draw.
+std::vector<double> shared_normals(const RayNoise& noise, std::span<const std::uint32_t> rays,
+                                   std::uint64_t seed, std::uint32_t draw);
 
 }  // namespace scan

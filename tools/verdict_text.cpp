@@ -3,6 +3,7 @@
 #include "tools/verdict_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -12,12 +13,31 @@ namespace scan {
 
 using nlohmann::ordered_json;
 
+namespace {
+
+bool is_pair(const ordered_json& value) {
+  return value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number();
+}
+
+}  // namespace
+
 std::string statement_remark(const ordered_json& measurement) {
   const ordered_json expected = measurement.value("expected", ordered_json()),
                      value = measurement.value("value", ordered_json());
-  if (!expected.is_array() || expected.size() != 2 || !value.is_number()) return "";
+  if (!is_pair(expected) || !value.is_number()) return "";
   if (value.get<double>() > expected[1].get<double>()) return "uncertainty stated too small";
   return value.get<double>() < expected[0].get<double>() ? "uncertainty stated too large" : "";
+}
+
+std::string prediction_remark(const ordered_json& measurement) {
+  const ordered_json predicted = measurement.value("predicted", ordered_json()),
+                     value = measurement.value("value", ordered_json());
+  if (!is_pair(predicted) || !value.is_number()) return "";
+  const double low = predicted[0].get<double>(), high = predicted[1].get<double>();
+  const double is = value.get<double>();
+  if (low <= is && is <= high) return "";
+  return std::abs(is) > std::max(std::abs(low), std::abs(high)) ? "larger than predicted"
+                                                                : "smaller than predicted";
 }
 
 void say_verdict(const ordered_json& verdict, const Console& console) {
@@ -30,13 +50,18 @@ void say_verdict(const ordered_json& verdict, const Console& console) {
     std::snprintf(line, sizeof line, "  %-28s %12s", m.at("name").get<std::string>().c_str(),
                   readable(m.at("value"), unit).c_str());
     std::string text = line;
-    if (m.contains("predicted")) text += "   predicted " + readable(m.at("predicted"), unit);
+    const auto range = [&](const char* key) {
+      return readable(m.at(key)[0], unit) + " to " + readable(m.at(key)[1], unit);
+    };
+    if (is_pair(m.value("interval", ordered_json())))
+      text += "   (95 %: " + range("interval") + ")";
+    if (is_pair(m.value("predicted", ordered_json()))) text += "   predicted " + range("predicted");
     if (!m.at("limit").is_null())
       text += std::string("   ") + (m.at("pass").get<bool>() ? "pass" : "FAIL") + " (" +
               m.at("relation").get<std::string>() + " " + readable(m.at("limit"), unit) + ")";
     if (const std::string remark = statement_remark(m); !remark.empty())
-      text += "   " + remark + " (honest: " + readable(m.at("expected")[0], unit) + " to " +
-              readable(m.at("expected")[1], unit) + ")";
+      text += "   " + remark + " (honest: " + range("expected") + ")";
+    if (const std::string remark = prediction_remark(m); !remark.empty()) text += "   " + remark;
     console.say(text);
     console.say("      " + m.at("definition").get<std::string>() + " [" +
                 m.at("over").get<std::string>() +

@@ -14,8 +14,13 @@ namespace scan {
 // larger) or "uncertainty stated too large"; else empty.
 std::string statement_remark(const nlohmann::ordered_json& measurement);
 
-// Each measurement of a verdict.json, with its prediction where there is one, and its definition in
-// the line below; then PASS or FAIL, and below it what "left_out" names (tools/left_out.h).
+// Of one that lies beyond its "predicted", in a scanner's data sheet: "larger than predicted" or
+// "smaller than predicted"; else empty.
+std::string prediction_remark(const nlohmann::ordered_json& measurement);
+
+// Each measurement of a verdict.json, with its sampling interval and its prediction where there are
+// some, and its definition in the line below; then PASS or FAIL, and below it what "left_out" names
+// (tools/left_out.h).
 void say_verdict(const nlohmann::ordered_json& verdict, const Console& console);
 
 }  // namespace scan

@@ -103,15 +103,18 @@ std::vector<Measurement> measure_disparity(const Arguments& arguments) {
   return measurements;
 }
 
-void refuse_emptied(const std::string& path) {
-  if (is_emptied_mesh(path))
-    throw Error(Trouble::input, path + ": is a mesh without a face (element face 0)",
-                "is it a cloud? `scan convert` writes its points without the empty element");
+// Mesh programs write clouds with an empty list of faces; a surface that came out empty has none
+// either, and must not be judged by what is left of it.
+void tell_of_no_face(const std::string& path, Console& console) {
+  if (is_emptied_surface(path))
+    throw Error(Trouble::input, path + ": is a surface without a face (element face 0)");
+  if (lists_no_face(path))
+    console.warn(path + ": lists no face (element face 0); its points are measured, as a cloud");
 }
 
 std::vector<Measurement> measure_files(const Arguments& arguments, Console& console) {
   if (is_disparity(arguments.measured)) return measure_disparity(arguments);
-  refuse_emptied(arguments.measured);
+  tell_of_no_face(arguments.measured, console);
   const TrueSurface truth = read_true_surface(arguments.truth);
   for (const Mesh& mesh : truth.meshes) warn_of_flat_triangles(arguments.truth, mesh, console);
   warn_of_holes(arguments.truth, truth, console);
@@ -143,8 +146,9 @@ ordered_json sheet_json(const std::vector<SheetLine>& sheet, const Verdict& verd
   for (auto& measurement : json.at("measurements"))
     for (const SheetLine& line : sheet)
       if (line.measured.name == measurement.at("name"))
-        measurement["predicted"] =
-            std::isfinite(line.predicted) ? ordered_json(line.predicted) : ordered_json(nullptr);
+        measurement["predicted"] = line.predicted
+                                       ? ordered_json{line.predicted->low, line.predicted->high}
+                                       : ordered_json();
   return json;
 }
 
@@ -222,8 +226,10 @@ int verify(const Arguments& arguments, Console& console) {
 
 Action verify_command(CommandLine& line) {
   auto arguments = std::make_shared<Arguments>();
-  line.input("MEASURED", arguments->measured,
-             "a mesh, a cloud, a disparity (.pfm), a run folder, or a recipe with --artefacts");
+  line.input(
+      "MEASURED", arguments->measured,
+      "a mesh, a cloud (also a PLY with `element face 0`), a disparity (.pfm), a run folder, or "
+      "a recipe with --artefacts");
   line.option("--truth", arguments->truth,
               "the reference: a mesh, a run's truth/surface.json, or a disparity");
   line.option("--poses", arguments->poses, "estimated poses");

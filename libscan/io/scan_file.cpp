@@ -109,10 +109,12 @@ TexturedMesh read_any_mesh(const std::filesystem::path& path) {
   refuse_ending(path, Trouble::input, ".ply .obj .stl .off .glb .gltf");
 }
 
-// None if its header does not speak of faces.
-std::optional<std::size_t> ply_faces(const std::filesystem::path& path) {
-  const PlyHeader header = parse_ply_header(read_file(path), path.string());
-  const PlyElement* face = header.empty.find("face");
+Ply ply_without_values(const std::filesystem::path& path) {
+  return parse_ply_header(read_file(path), path.string()).empty;
+}
+
+std::optional<std::size_t> face_count(const Ply& ply) {  // none if it does not speak of faces
+  const PlyElement* face = ply.find("face");
   return face ? std::optional<std::size_t>(face->count) : std::nullopt;
 }
 
@@ -185,13 +187,20 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
 
 bool holds_triangles(const std::filesystem::path& path) {
   const std::string ending = ending_of(path);
-  if (ending == ".ply") return ply_faces(path).value_or(0) > 0;
+  if (ending == ".ply") return face_count(ply_without_values(path)).value_or(0) > 0;
   return ending == ".obj" || ending == ".off" || ending == ".stl" || ending == ".glb" ||
          ending == ".gltf";
 }
 
-bool is_emptied_mesh(const std::filesystem::path& path) {
-  return ending_of(path) == ".ply" && ply_faces(path) == 0u;
+bool lists_no_face(const std::filesystem::path& path) {
+  return ending_of(path) == ".ply" && face_count(ply_without_values(path)) == 0u;
+}
+
+bool is_emptied_surface(const std::filesystem::path& path) {
+  if (!lists_no_face(path)) return false;
+  const Ply ply = ply_without_values(path);
+  const PlyElement* vertex = ply.find("vertex");
+  return !vertex || vertex->count == 0 || vertex->find("support_m");
 }
 
 }  // namespace scan

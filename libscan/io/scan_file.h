@@ -38,8 +38,11 @@ void check_mesh_ending(const std::filesystem::path& path);
 // True for a PLY with faces and for the formats of meshes alone, false for points.
 bool holds_triangles(const std::filesystem::path& path);
 
-// True for a PLY whose header speaks of faces and has none: a mesh that came out empty, whose
-// vertices are no cloud that someone measured.
-bool is_emptied_mesh(const std::filesystem::path& path);
+// True for a PLY that lists no face (`element face 0`), as mesh programs write clouds.
+bool lists_no_face(const std::filesystem::path& path);
+
+// Of those, true for a surface that came out empty: it has no vertex either, or the vertices carry
+// `support_m`, which only surfaces have (surface_file.h). They are no cloud that someone measured.
+bool is_emptied_surface(const std::filesystem::path& path);
 
 }  // namespace scan

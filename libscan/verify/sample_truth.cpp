@@ -13,6 +13,7 @@
 #include "libscan/core/error.h"
 #include "libscan/core/parallel.h"
 #include "libscan/core/random.h"
+#include "libscan/verify/line_crossings.h"
 #include "libscan/verify/surface_error.h"
 #include "libscan/verify/true_surface_parts.h"
 
@@ -23,20 +24,6 @@ constexpr double pi = std::numbers::pi;
 
 using Samples = std::vector<SurfaceSample>;
 
-struct Ball {
-  Eigen::Vector3d centre;
-  double radius_m;
-};
-
-Ball ball_around(const Bounds& box) {
-  return {box.center(), (0.5 + 1e-6) * box.diagonal().norm()};
-}
-
-struct Line {
-  Eigen::Vector3d origin;  // where it enters the ball's tangent slab
-  Eigen::Vector3d direction;
-};
-
 // Isotropic and uniform: any direction, then any place on the disc across it.
 Line random_line(const Ball& ball, RandomStream& random) {
   const double z = 2 * random.uniform() - 1, angle = 2 * pi * random.uniform();
@@ -46,33 +33,6 @@ Line random_line(const Ball& ball, RandomStream& random) {
   const double r = ball.radius_m * std::sqrt(random.uniform());
   const double place = 2 * pi * random.uniform();
   return {ball.centre + r * (std::cos(place) * u + std::sin(place) * v) - ball.radius_m * w, w};
-}
-
-// Newton steps of a point that is within a least step, 1e-6 of the ball, of the surface: two reach
-// rounding and move it by no more than that.
-SurfaceSample onto_surface(const PlacedShape& shape, Eigen::Vector3d x) {
-  for (int step = 0; step < 2; ++step) {
-    const DistanceField f = field(shape, x);
-    x -= f.value_m / f.gradient.squaredNorm() * f.gradient;
-  }
-  return {x, field(shape, x).gradient.normalized(), 0};
-}
-
-// All crossings of a line with a solid. The field never exceeds the distance, so a step of its size
-// cannot skip a surface; the least step passes through it, and misses only shorter chords.
-void add_crossings(const PlacedShape& shape, const Ball& ball, const Line& line, Samples& samples) {
-  const double least_m = 1e-6 * ball.radius_m;
-  double t = 0, value_m = field(shape, line.origin).value_m;
-  while (t < 2 * ball.radius_m) {
-    const double next = t + std::max(std::abs(value_m), least_m);
-    const double next_m = field(shape, line.origin + next * line.direction).value_m;
-    if ((value_m > 0) != (next_m > 0)) {
-      const double zero = t + (next - t) * value_m / (value_m - next_m);  // secant
-      samples.push_back(onto_surface(shape, line.origin + zero * line.direction));
-    }
-    t = next;
-    value_m = next_m;
-  }
 }
 
 // Where one part's samples come from; `density` is samples per square metre.
@@ -91,7 +51,7 @@ Samples on_solid(const PlacedShape& shape, const Ball& ball, const Request& requ
   parallel_chunks(lines, chunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       RandomStream random(request.seed, request.stream, i);
-      add_crossings(shape, ball, random_line(ball, random), found[begin / chunk]);
+      add_crossings(shape, random_line(ball, random), 2 * ball.radius_m, found[begin / chunk]);
     }
   });
   Samples samples;

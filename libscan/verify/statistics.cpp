@@ -94,6 +94,14 @@ std::optional<Interval> root_mean_square_interval(std::span<const double> values
   return Interval{std::max(0.0, rms - half), rms + half};
 }
 
+Interval share_interval(double share, std::size_t n) {
+  const double count = static_cast<double>(n), z2 = confident * confident;
+  const double centre = (share + z2 / (2 * count)) / (1 + z2 / count);
+  const double half = confident / (1 + z2 / count) *
+                      std::sqrt(share * (1 - share) / count + z2 / (4 * count * count));
+  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
 std::vector<Measurement> summary(const std::string& prefix, std::span<const double> errors,
                                  const std::string& unit, const std::string& over, Values values) {
   std::vector<Measurement> figures;

@@ -30,6 +30,10 @@ std::optional<Interval> quantile_interval(std::span<const double> values, double
 std::optional<Interval> mean_interval(std::span<const double> values);
 std::optional<Interval> root_mean_square_interval(std::span<const double> values);
 
+// Of a share of a population, from the share of n drawn ones (Wilson 1927): inside 0 to 1, and open
+// towards the middle where all or none of them count.
+Interval share_interval(double share, std::size_t n);
+
 // prefix_mean, _rms, _median, _p95, _p997 and _max of unsigned errors. With `drawn`, the values are
 // a random sample and the figures carry their intervals; the maximum has none, but by the rule of
 // three at most 3 / n of the population exceeds it, which its `over` says.

@@ -229,8 +229,10 @@ TEST(MeshFile, PointsAloneAreNoMesh) {
   write_scan(folder / "points.ply", full_scan());
   EXPECT_FALSE(holds_triangles(folder / "points.ply"));
   EXPECT_FALSE(holds_triangles(folder / "points.xyz"));
-  EXPECT_FALSE(is_emptied_mesh(folder / "points.ply"));
-  EXPECT_FALSE(is_emptied_mesh(folder / "points.xyz"));
+  for (const char* points : {"points.ply", "points.xyz"}) {
+    EXPECT_FALSE(lists_no_face(folder / points)) << points;
+    EXPECT_FALSE(is_emptied_surface(folder / points)) << points;
+  }
   EXPECT_NE(error_of([&] { read_mesh(folder / "points.ply"); }).find("holds no triangle"),
             std::string::npos);
 }

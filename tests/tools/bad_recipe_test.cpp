@@ -175,9 +175,16 @@ TEST(ResumedRun, MakesCutScansAnewAndNamesWhatIsBroken) {
   EXPECT_EQ(run_scan({"run", recipe, run, "--resume"}).exit_code, 0);
   EXPECT_EQ(slurp(folder / "run/scans/003.ply"), scan);
   spill(folder / "run/timings.json", "[1, 2");
+  const std::string page = (folder / "page.html").string();
+  const Outcome report = run_scan({"report", run, page});
+  EXPECT_EQ(report.exit_code, 3) << report.err;
+  EXPECT_NE(report.err.find("--resume goes on with it"), std::string::npos) << report.err;
   const Outcome timings = run_scan({"run", recipe, run, "--resume"});
-  EXPECT_EQ(timings.exit_code, 3) << timings.err;
+  EXPECT_EQ(timings.exit_code, 0) << timings.err;
   EXPECT_NE(timings.err.find("run/timings.json: not valid JSON"), std::string::npos);
+  const Outcome again = run_scan({"report", run, page});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_NE(slurp(page).find("what it cost is unknown"), std::string::npos);
 
   const std::string as_run = slurp(folder / "run/recipe.json");
   spill(folder / "run/recipe.json", as_run.substr(0, as_run.size() / 2));

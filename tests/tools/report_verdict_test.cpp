@@ -73,7 +73,7 @@ TEST(Report, TakesADataSheetAndAStudy) {
   spill(folder / "sheet.json",
         R"({ "pass": true, "measurements": [ { "name": "probing_form", "value": 1.25e-5,
              "unit": "m", "over": "10 balls", "count": 10, "limit": null, "pass": true,
-             "predicted": 1.5e-5 } ] })");
+             "predicted": [1.5e-5, 2.5e-5] } ] })");
   spill(folder / "study.json",
         R"({ "figure": "accuracy_rms", "unit": "m", "tolerance": 0.001, "machine": "a machine",
              "threads": 2, "seconds": "all",
@@ -88,8 +88,11 @@ TEST(Report, TakesADataSheetAndAStudy) {
                                     (folder / "study.json").string()});
   ASSERT_EQ(report.outcome.exit_code, 0) << report.outcome.err;
   EXPECT_TRUE(holds(report.page, "<data value=\"1.25e-05\">12.5 µm</data>"));
-  EXPECT_TRUE(holds(report.page, "<data value=\"1.5e-05\">15 µm</data>"));
+  EXPECT_TRUE(holds(
+      report.page, "<data value=\"1.5e-05\">15 µm</data> to <data value=\"2.5e-05\">25 µm</data>"));
+  EXPECT_TRUE(holds(report.page, "smaller than predicted"));
   EXPECT_TRUE(holds(report.csv, "artefacts,probing_form,1.25e-05,m"));
+  EXPECT_TRUE(holds(report.csv, "10 balls,1.5e-05,2.5e-05\n"));
   EXPECT_TRUE(holds(report.page, "Take this."));
   EXPECT_TRUE(holds(report.page, "<section id=\"tradeoff\""));
 }

@@ -53,6 +53,14 @@ TEST(SurfaceError, OfAHalfMissingSquare) {
   EXPECT_NEAR(figure(figures, "completeness_rms"), std::sqrt(1.0 / 24), 0.2 * spread);
   EXPECT_NEAR(figure(figures, "completeness_p95"), 0.45, 0.22 * spread);
   EXPECT_NEAR(figure(figures, "f_score"), 2 * 0.6 / 1.6, 0.5 * spread);
+  // Precision is 1 of n, recall 0.6 +- 1.96 sqrt(0.24 / n); dF / dR = 2 / (1 + R)^2.
+  const Measurement f = measurement(figures, "f_score");
+  const double drawn = static_cast<double>(f.count) / 2;  // of each surface, doubled up to thrice
+  const double width = 2 * 1.96 * std::sqrt(0.24 / drawn) * 2 / 2.56;
+  EXPECT_NEAR(f.interval->high - f.interval->low, width, 0.05 * width);
+  EXPECT_LT(f.interval->low, 0.75);
+  EXPECT_GT(f.interval->high, 0.75);
+  EXPECT_EQ(f.over, "samples within 0.1 m, both ways");
   EXPECT_LE(figure(figures, "completeness_max"), 0.5);
 }
 

@@ -19,16 +19,24 @@ bool is_limited(const ordered_json& measurement) {
   return measurement.contains("limit") && measurement.at("limit").is_number();
 }
 
+bool has_range(const ordered_json& m, const char* key) {
+  const ordered_json range = m.value(key, ordered_json());
+  return range.is_array() && range.size() == 2;
+}
+
 bool has_interval(const ordered_json& m) {
-  const ordered_json interval = m.value("interval", ordered_json());
-  return interval.is_array() && interval.size() == 2;
+  return has_range(m, "interval");
+}
+
+std::string range_cell(const ordered_json& m, const char* key, const std::string& unit) {
+  if (!has_range(m, key)) return raw_cell("", true);
+  const ordered_json& range = m.at(key);
+  return raw_cell(exact(range[0], unit) + " to " + exact(range[1], unit), true);
 }
 
 // What sampling leaves open of a figure.
 std::string interval_cell(const ordered_json& m, const std::string& unit) {
-  if (!has_interval(m)) return raw_cell("", true);
-  const ordered_json& interval = m.at("interval");
-  return raw_cell(exact(interval[0], unit) + " to " + exact(interval[1], unit), true);
+  return range_cell(m, "interval", unit);
 }
 
 // On narrow screens a name may break behind its underscores.
@@ -71,6 +79,8 @@ std::string what_it_is(const ordered_json& m) {
   if (const std::string remark = statement_remark(m); !remark.empty())
     html = warning_tag(remark) + " <span class=\"quiet\">honest: " + exact(m["expected"][0], "1") +
            " to " + exact(m["expected"][1], "1") + "</span><br>";
+  if (const std::string remark = prediction_remark(m); !remark.empty())
+    html += warning_tag(remark) + "<br>";
   if (definition.is_string() && !definition.get<std::string>().empty())
     html += escaped(definition.get<std::string>()) + "<br>";
   return html + "<span class=\"quiet\">" + escaped(m.value("over", "")) + " (" +
@@ -141,7 +151,7 @@ std::string figure_table(const std::string& caption, const ordered_json& measure
     const std::string unit = m.value("unit", "");
     rows += "<tr>" + name_cell(m) + exact_cell(m.at("value"), unit);
     if (sampled) rows += interval_cell(m, unit);
-    if (predicted) rows += exact_cell(m.value("predicted", ordered_json()), unit);
+    if (predicted) rows += range_cell(m, "predicted", unit);
     if (limited) rows += limit_cell(m, unit) + verdict_cell(m);
     rows += "<td>" + what_it_is(m) + "</td></tr>\n";
   }

@@ -156,10 +156,11 @@ std::vector<Part> parts_of(const ordered_json& twin, const Drawn& drawn) {
     parts.push_back({"effects", "Simulated effects", effect_table(twin.at("effects"))});
   if (twin.at("artefacts").is_object())
     parts.push_back({"artefacts", "Scanner's data sheet",
-                     figure_table("Errors on calibrated bodies, after VDI/VDE 2634 and ISO "
-                                  "10360-13, not certified; predicted by the points' own sigma "
-                                  "and spacing.",
-                                  twin.at("artefacts").at("measurements"))});
+                     limit_table(twin.at("artefacts").at("measurements")) +
+                         figure_table("Errors on calibrated bodies, after VDI/VDE 2634 and ISO "
+                                      "10360-13, not certified; predicted is where 95 % of the "
+                                      "figures lie that the points' own sigma and spacing allow.",
+                                      twin.at("artefacts").at("measurements"))});
   if (twin.at("tradeoff").is_object())
     parts.push_back({"tradeoff", "Accuracy against time", tradeoff_parts(twin.at("tradeoff"))});
   parts.push_back({"cost", "What it cost", cost_table(twin.at("cost"), twin.at("effects"))});

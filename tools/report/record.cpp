@@ -41,7 +41,7 @@ ordered_json optional_part(const fs::path& named, const fs::path& usual,
                            std::initializer_list<const char*> keys) {
   const fs::path path = named.empty() ? usual : named;
   if (named.empty() && !fs::exists(usual)) return nullptr;
-  const ordered_json part = named.empty() ? read_part(path) : read_ordered_json(path);
+  const ordered_json part = read_ordered_json(path);  // no stage of the run makes it
   for (const char* key : keys)
     if (!part.is_object() || !part.contains(key))
       throw Error(Trouble::input,

@@ -92,13 +92,14 @@ std::string measurement_lines(const std::string& part, const ordered_json& measu
   std::string csv;
   for (const auto& m : measurements) {
     const auto key = [&](const char* name) { return m.value(name, ordered_json()); };
-    const ordered_json interval = key("interval");
-    const auto end = [&](std::size_t i) {
-      return interval.is_array() && interval.size() == 2 ? interval[i] : ordered_json();
+    const auto end = [&](const char* range, std::size_t i) {
+      const ordered_json ends = key(range);
+      return ends.is_array() && ends.size() == 2 ? ends[i] : ordered_json();
     };
-    csv += csv_line({part, key("name"), key("value"), key("unit"), end(0), end(1), key("relation"),
-                     key("limit"), key("limit").is_null() ? "" : key("pass"), key("count"),
-                     key("over")});
+    csv += csv_line({part, key("name"), key("value"), key("unit"), end("interval", 0),
+                     end("interval", 1), key("relation"), key("limit"),
+                     key("limit").is_null() ? "" : key("pass"), key("count"), key("over"),
+                     end("predicted", 0), end("predicted", 1)});
   }
   return csv;
 }
@@ -106,7 +107,7 @@ std::string measurement_lines(const std::string& part, const ordered_json& measu
 std::string plain_line(const std::string& part, const std::string& name, const ordered_json& value,
                        const std::string& unit) {
   const ordered_json none;
-  return csv_line({part, name, value, unit, none, none, none, none, none, none, none});
+  return csv_line({part, name, value, unit, none, none, none, none, none, none, none, none, none});
 }
 
 }  // namespace
@@ -140,7 +141,8 @@ ordered_json report_twin(const RunRecord& record) {
 }
 
 std::string report_csv(const ordered_json& twin) {
-  std::string csv = "part,name,value,unit,low,high,relation,limit,pass,count,over\n";
+  std::string csv =
+      "part,name,value,unit,low,high,relation,limit,pass,count,over,predicted_low,predicted_high\n";
   csv += measurement_lines("verdict", twin.at("measurements"));
   for (const auto& effect : twin.at("left_out"))
     csv += plain_line("left_out", effect.at("effect"), effect.at("bound_m"), "m");
