@@ -24,6 +24,9 @@ constexpr double cut_share = 0.15;
 // 0.45 if but the tail from one width on is left; its mean is off by 0.29, 0.80 and 1.53.
 constexpr double whole_share = 0.8;
 
+// A beam one and a half widths beyond an edge leaves 0.32 of its height on it.
+constexpr double tail_share = 0.3;
+
 }  // namespace
 
 double stripe_shift_px(const LitPlace& here, const LitPlace& one, const LitPlace& other,
@@ -142,9 +145,10 @@ std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<co
                         std::max(walk.moves_px(1), walk.moves_px(-1)) > here.width_px;
   if (!one && !other) return is_swept ? std::nullopt : std::optional(perhaps_cut);
   if (!one || !other) {
-    const double whole_px = one ? one->width_px : other->width_px;
-    if (here.width_px < whole_share * whole_px) return std::nullopt;
-    if (is_at_rim(walk, whole_px, one ? 1 : -1)) return std::nullopt;
+    const LitPlace& inner = one ? *one : *other;
+    if (here.width_px < whole_share * inner.width_px) return std::nullopt;
+    if (here.height_e < tail_share * inner.height_e) return std::nullopt;
+    if (is_at_rim(walk, inner.width_px, one ? 1 : -1)) return std::nullopt;
     return perhaps_cut;
   }
   if (here.width_px < whole_share * std::min(one->width_px, other->width_px)) return std::nullopt;

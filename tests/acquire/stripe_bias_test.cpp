@@ -116,6 +116,18 @@ TEST(StripeShift, OfACutStripeIsNotKnown) {
   EXPECT_FALSE(stripe_shift(sweep.frames, sweep.rays, 13));
 }
 
+// Nor is one a place that is as wide but has a third of the height, as beyond an edge.
+TEST(StripeShift, OfATailBesideAHoleIsNotKnown) {
+  Sweep sweep = sweep_over_a_plane(25);
+  sweep.rays[12] = {};
+  for (const std::size_t ray : {11u, 13u}) {
+    sweep.rays[ray].height_e = 0.31 * 1000;
+    EXPECT_TRUE(stripe_shift(sweep.frames, sweep.rays, ray)) << ray;
+    sweep.rays[ray].height_e = 0.29 * 1000;
+    EXPECT_FALSE(stripe_shift(sweep.frames, sweep.rays, ray)) << ray;
+  }
+}
+
 // Where the plane of light goes past an edge to a body behind, its tail still lights the edge: of
 // that stripe less is left than of those on either side, which are seen.
 TEST(StripeShift, OfATailBetweenTwoBodiesIsNotKnown) {
