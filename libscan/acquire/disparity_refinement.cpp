@@ -2,24 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/acquire/disparity_refinement.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "libscan/acquire/match_window.h"
 #include "libscan/acquire/window_bias.h"
 #include "libscan/core/parallel.h"
 
 namespace scan::decoding {
 namespace {
 
-constexpr double same_surface_px = 1;  // disparity step that ends a surface
 constexpr double farthest_move_px = 1;
-// How far the matcher leans towards whole columns with all its neighbours: 0.14 px (rms over places
-// between columns) on planes that face the pair, none on oblique ones, where it scatters.
-constexpr double matcher_lean_px = 0.1;
 
 // Value and derivative at a place within a row; none outside [1, width - 2].
 struct Sample {
@@ -46,72 +42,6 @@ bool sample(const Image<std::uint8_t>& image, double x, int row, Sample& result)
 double slope_of(const Image<std::uint8_t>& image, int column, int row) {
   const int before = std::max(0, column - 1), after = std::min(image.width - 1, column + 1);
   return 0.5 * (image(after, row) - image(before, row));
-}
-
-// One pixel of the window: where it is, and its share of the disparity's slope.
-struct WindowPixel {
-  int column, row;
-  double offset_px;  // disparity here minus disparity at the centre
-};
-
-struct Window {
-  std::vector<WindowPixel> pixels;
-  double slope = 0;           // of the disparity along the row
-  double start_variance = 0;  // px^2, of the matcher's disparity at the centre
-};
-
-// Slope of the disparity by least squares over the same surface in a window of twice the reach.
-Eigen::Vector2d slope_at(const Image<float>& disparity, int column, int row, int reach) {
-  Eigen::Matrix2d moments = Eigen::Matrix2d::Identity() * 1e-3;  // no neighbours: no slope
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  const double centre = disparity(column, row);
-  for (int y = std::max(0, row - reach); y <= std::min(disparity.height - 1, row + reach); ++y)
-    for (int x = std::max(0, column - reach); x <= std::min(disparity.width - 1, column + reach);
-         ++x) {
-      const double step = disparity(x, y) - centre;
-      const double distance = std::hypot(x - column, y - row);
-      if (!(std::abs(step) <= same_surface_px * std::max(1.0, 0.5 * distance))) continue;
-      const Eigen::Vector2d offset(x - column, y - row);
-      moments += offset * offset.transpose();
-      right += step * offset;
-    }
-  return moments.ldlt().solve(right);
-}
-
-// px^2, of the matcher's disparity, by how far those of the same surface scatter about the plane
-// of that slope. Its errors are as those of means over its blocks, so that the plane's three
-// numbers are told by count / block^2 independent ones.
-double start_variance(const Image<float>& disparity, int column, int row, int reach,
-                      const Eigen::Vector2d& slope, int block_px) {
-  double count = 0, sum = 0, sum2 = 0;
-  const double centre = disparity(column, row);
-  for (int y = std::max(0, row - reach); y <= std::min(disparity.height - 1, row + reach); ++y)
-    for (int x = std::max(0, column - reach); x <= std::min(disparity.width - 1, column + reach);
-         ++x) {
-      const double off = disparity(x, y) - centre - slope.dot(Eigen::Vector2d(x - column, y - row));
-      if (!(std::abs(off) <= same_surface_px)) continue;
-      ++count;
-      sum += off;
-      sum2 += off * off;
-    }
-  const double scatter2 = std::max(0.0, sum2 / count - sum * sum / (count * count));
-  const double independent = count / (block_px * block_px);
-  return scatter2 * independent / std::max(independent - 3, 1.0) +
-         matcher_lean_px * matcher_lean_px;
-}
-
-Window window_at(const Image<float>& disparity, int column, int row, int block_px) {
-  const int half = refinement_window_px(block_px) / 2;
-  const Eigen::Vector2d slope = slope_at(disparity, column, row, 2 * half);
-  Window window{{}, slope.x(), start_variance(disparity, column, row, 2 * half, slope, block_px)};
-  for (int y = std::max(0, row - half); y <= std::min(disparity.height - 1, row + half); ++y)
-    for (int x = std::max(0, column - half); x <= std::min(disparity.width - 1, column + half);
-         ++x) {
-      const double offset = slope.dot(Eigen::Vector2d(x - column, y - row));
-      const double step = disparity(x, y) - disparity(column, row);
-      if (std::abs(step - offset) <= same_surface_px) window.pixels.push_back({x, y, offset});
-    }
-  return window;
 }
 
 // Sums over the window at disparity d, brightness difference eliminated.
@@ -200,40 +130,54 @@ double descend(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right
   return d;
 }
 
-// What cubic convolution leaves of the right image's noise at a window's places: the sum of the
-// squares of its four weights, from 1 on a column to 0.64 halfway to the next, and its derivative
-// along the row, both summed over the window.
-struct NoiseLeft {
-  double share = 0, slope = 0;
+// Sums over the window at the place found, for its sigma.
+struct Yield {
+  // What cubic convolution leaves of the right image's noise, the sum of the squares of its four
+  // weights, from 1 on a column to 0.64 halfway to the next; and its derivative along the row.
+  double noise = 0, noise_slope = 0;
+  Eigen::Vector2d lever = Eigen::Vector2d::Zero();  // texture times the distance from the centre
 };
 
-NoiseLeft noise_left(const Image<std::uint8_t>& right, const std::vector<WindowPixel>& window,
-                     double d) {
-  NoiseLeft left;
+Yield yield_at(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+               const std::vector<WindowPixel>& window, double d) {
+  Yield sum;
+  Eigen::Vector2d first = Eigen::Vector2d::Zero();
+  double slopes = 0, count = 0;
   for (const WindowPixel& pixel : window) {
     const double x = pixel.column - d - pixel.offset_px;
-    if (!is_inside(right, x)) continue;
+    Sample seen;
+    if (!sample(right, x, pixel.row, seen)) continue;
     const double t = x - static_cast<int>(x), u = t * (1 - t);
-    left.share += 1 - u * u * (4.5 + 5 * u);
-    left.slope -= u * (9 + 15 * u) * (1 - 2 * t);
+    sum.noise += 1 - u * u * (4.5 + 5 * u);
+    sum.noise_slope -= u * (9 + 15 * u) * (1 - 2 * t);
+    const Eigen::Vector2d moment =
+        slope_of(left, pixel.column, pixel.row) * Eigen::Vector2d(pixel.dx, pixel.dy);
+    sum.lever += seen.slope * moment;
+    first += moment;
+    slopes += seen.slope;
+    ++count;
   }
-  return left;
+  sum.lever -= slopes / count * first;
+  return sum;
 }
 
 // The error of what descend() finds is (w F + prior E) / (w T + prior) with its weight w, the
-// error E of the start, and F, what noise adds to half the residual's slope at the true place. Of
+// error E of the start, and F, what is wrong with half the residual's slope at the true place. Of
 // a pixel's variance s^2 the left image's noise gives F the variance s^2 slopes2, by slopes that
 // are noisy themselves; the right image's gives s^2 T, since interpolation passes the waves that
 // slopes are made of. By its own slopes it gives nothing but a mean, s^2 / 2 times the derivative
-// of the noise left, which draws matches between columns. T is by the left image's slopes, which
-// are 1 - slope times the right one's.
-double sigma_of(const Fit& fit, const NoiseLeft& left, const Window& window, double prior) {
+// of the noise left, which draws matches between columns. A window that follows a wrong slope is
+// off by the lever of its texture. T and the lever are by the left image's slopes, which are
+// 1 - row_slope times the right one's.
+double sigma_of(const Fit& fit, const Yield& yield, const Window& window, double prior) {
   const double weight = fit.slopes2 > 0 ? information(fit) / fit.slopes2 : 0;
-  const double texture = fit.texture / std::max(1 - window.slope, 0.5);
-  const double variance = residual_variance(fit) / (1 + left.share / fit.count);
-  const double drawn = variance * left.slope / 2;
-  const double of_slope = variance * (fit.slopes2 + texture) + drawn * drawn;
-  return std::sqrt(weight * weight * of_slope + prior * prior * window.start_variance) /
+  const double shrunk = std::max(1 - window.row_slope, 0.5);
+  const double texture = fit.texture / shrunk;
+  const double variance = residual_variance(fit) / (1 + yield.noise / fit.count);
+  const double drawn = variance * yield.noise_slope / 2;
+  const double turned2 = window.matcher.slope * (yield.lever / shrunk).squaredNorm();
+  const double of_window = variance * (fit.slopes2 + texture) + drawn * drawn + turned2;
+  return std::sqrt(weight * weight * of_window + prior * prior * window.matcher.disparity_px2) /
          (weight * texture + prior);
 }
 
@@ -245,7 +189,8 @@ Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>&
   // Twice: the first residual holds the error of the start besides the noise.
   double d = descend(left, right, window.pixels, start, start, prior, fit);
   d = descend(left, right, window.pixels, start, d, prior, fit);
-  return {d, sigma_of(fit, noise_left(right, window.pixels, d), window, prior), fit.correlation};
+  return {d, sigma_of(fit, yield_at(left, right, window.pixels, d), window, prior),
+          fit.correlation};
 }
 
 // The noise of the places that tell the curvature is little beside what the pixel's own gains.
