@@ -2,20 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "libscan/acquire/disparity_refinement.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "libscan/acquire/match_window.h"
 #include "libscan/acquire/window_bias.h"
 #include "libscan/core/parallel.h"
 
 namespace scan::decoding {
 namespace {
 
-constexpr double same_surface_px = 1;  // disparity step that ends a surface
 constexpr double farthest_move_px = 1;
 
 // Value and derivative at a place within a row; none outside [1, width - 2].
@@ -24,8 +23,12 @@ struct Sample {
   double slope = 0;
 };
 
+bool is_inside(const Image<std::uint8_t>& image, double x) {
+  return x >= 1 && x < image.width - 2;
+}
+
 bool sample(const Image<std::uint8_t>& image, double x, int row, Sample& result) {
-  if (!(x >= 1 && x < image.width - 2)) return false;
+  if (!is_inside(image, x)) return false;
   const int i = static_cast<int>(x);
   const double t = x - i;
   const double a = image(i - 1, row), b = image(i, row), c = image(i + 1, row),
@@ -39,43 +42,6 @@ bool sample(const Image<std::uint8_t>& image, double x, int row, Sample& result)
 double slope_of(const Image<std::uint8_t>& image, int column, int row) {
   const int before = std::max(0, column - 1), after = std::min(image.width - 1, column + 1);
   return 0.5 * (image(after, row) - image(before, row));
-}
-
-// One pixel of the window: where it is, and its share of the disparity's slope.
-struct WindowPixel {
-  int column, row;
-  double offset_px;  // disparity here minus disparity at the centre
-};
-
-// Slope of the disparity by least squares over the same surface in a window of twice the reach.
-Eigen::Vector2d slope_at(const Image<float>& disparity, int column, int row, int reach) {
-  Eigen::Matrix2d moments = Eigen::Matrix2d::Identity() * 1e-3;  // no neighbours: no slope
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  const double centre = disparity(column, row);
-  for (int y = std::max(0, row - reach); y <= std::min(disparity.height - 1, row + reach); ++y)
-    for (int x = std::max(0, column - reach); x <= std::min(disparity.width - 1, column + reach);
-         ++x) {
-      const double step = disparity(x, y) - centre;
-      const double distance = std::hypot(x - column, y - row);
-      if (!(std::abs(step) <= same_surface_px * std::max(1.0, 0.5 * distance))) continue;
-      const Eigen::Vector2d offset(x - column, y - row);
-      moments += offset * offset.transpose();
-      right += step * offset;
-    }
-  return moments.ldlt().solve(right);
-}
-
-std::vector<WindowPixel> window_at(const Image<float>& disparity, int column, int row, int half) {
-  const Eigen::Vector2d slope = slope_at(disparity, column, row, 2 * half);
-  std::vector<WindowPixel> window;
-  for (int y = std::max(0, row - half); y <= std::min(disparity.height - 1, row + half); ++y)
-    for (int x = std::max(0, column - half); x <= std::min(disparity.width - 1, column + half);
-         ++x) {
-      const double offset = slope.dot(Eigen::Vector2d(x - column, y - row));
-      const double step = disparity(x, y) - disparity(column, row);
-      if (std::abs(step - offset) <= same_surface_px) window.push_back({x, y, offset});
-    }
-  return window;
 }
 
 // Sums over the window at disparity d, brightness difference eliminated.
@@ -129,13 +95,16 @@ struct Refined {
   double correlation;
 };
 
-// Of the disparity that minimises the residual. Noise in the slopes adds to slopes2 but not to the
-// texture T: with the variance s^2 of the residuals the estimate has the variance s^2 slopes2 /
-// T^2.
-double information(const Fit& fit) {
+// Variance of a difference between the images where the windows match, never below their rounding.
+double residual_variance(const Fit& fit) {
   constexpr double rounding_variance = 1.0 / 6;  // two images, 1/12 each
-  const double noise2 = std::max(fit.residual / (fit.count - 2), rounding_variance);
-  return fit.slopes2 > 0 ? fit.texture * fit.texture / (fit.slopes2 * noise2) : 0;
+  return std::max(fit.residual / (fit.count - 2), rounding_variance);
+}
+
+// What the window weighs against the start. Noise in the slopes adds to slopes2 but not to the
+// texture T: with the variance s^2 of the residuals T^2 / (slopes2 s^2).
+double information(const Fit& fit) {
+  return fit.slopes2 > 0 ? fit.texture * fit.texture / (fit.slopes2 * residual_variance(fit)) : 0;
 }
 
 // Newton steps on residual * information / slopes2 + (d - start)^2 * prior; returns d, `fit` is the
@@ -161,15 +130,67 @@ double descend(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right
   return d;
 }
 
+// Sums over the window at the place found, for its sigma.
+struct Yield {
+  // What cubic convolution leaves of the right image's noise, the sum of the squares of its four
+  // weights, from 1 on a column to 0.64 halfway to the next; and its derivative along the row.
+  double noise = 0, noise_slope = 0;
+  Eigen::Vector2d lever = Eigen::Vector2d::Zero();  // texture times the distance from the centre
+};
+
+Yield yield_at(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+               const std::vector<WindowPixel>& window, double d) {
+  Yield sum;
+  Eigen::Vector2d first = Eigen::Vector2d::Zero();
+  double slopes = 0, count = 0;
+  for (const WindowPixel& pixel : window) {
+    const double x = pixel.column - d - pixel.offset_px;
+    Sample seen;
+    if (!sample(right, x, pixel.row, seen)) continue;
+    const double t = x - static_cast<int>(x), u = t * (1 - t);
+    sum.noise += 1 - u * u * (4.5 + 5 * u);
+    sum.noise_slope -= u * (9 + 15 * u) * (1 - 2 * t);
+    const Eigen::Vector2d moment =
+        slope_of(left, pixel.column, pixel.row) * Eigen::Vector2d(pixel.dx, pixel.dy);
+    sum.lever += seen.slope * moment;
+    first += moment;
+    slopes += seen.slope;
+    ++count;
+  }
+  sum.lever -= slopes / count * first;
+  return sum;
+}
+
+// The error of what descend() finds is (w F + prior E) / (w T + prior) with its weight w, the
+// error E of the start, and F, what is wrong with half the residual's slope at the true place. Of
+// a pixel's variance s^2 the left image's noise gives F the variance s^2 slopes2, by slopes that
+// are noisy themselves; the right image's gives s^2 T, since interpolation passes the waves that
+// slopes are made of. By its own slopes it gives nothing but a mean, s^2 / 2 times the derivative
+// of the noise left, which draws matches between columns. A window that follows a wrong slope is
+// off by the lever of its texture. T and the lever are by the left image's slopes, which are
+// 1 - row_slope times the right one's.
+double sigma_of(const Fit& fit, const Yield& yield, const Window& window, double prior) {
+  const double weight = fit.slopes2 > 0 ? information(fit) / fit.slopes2 : 0;
+  const double shrunk = std::max(1 - window.row_slope, 0.5);
+  const double texture = fit.texture / shrunk;
+  const double variance = residual_variance(fit) / (1 + yield.noise / fit.count);
+  const double drawn = variance * yield.noise_slope / 2;
+  const double turned2 = window.matcher.slope * (yield.lever / shrunk).squaredNorm();
+  const double of_window = variance * (fit.slopes2 + texture) + drawn * drawn + turned2;
+  return std::sqrt(weight * weight * of_window + prior * prior * window.matcher.disparity_px2) /
+         (weight * texture + prior);
+}
+
 Refined refine_pixel(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
-                     const std::vector<WindowPixel>& window, double start, double match_sigma_px) {
+                     const Window& window, double start, double match_sigma_px) {
   const double prior = 1 / (match_sigma_px * match_sigma_px);
-  Fit fit = fit_at(left, right, window, start);
+  Fit fit = fit_at(left, right, window.pixels, start);
   if (fit.count < 6) return {start, match_sigma_px, fit.correlation};
   // Twice: the first residual holds the error of the start besides the noise.
-  double d = descend(left, right, window, start, start, prior, fit);
-  d = descend(left, right, window, start, d, prior, fit);
-  return {d, 1 / std::sqrt(information(fit) + prior), fit.correlation};
+  double d = descend(left, right, window.pixels, start, start, prior, fit);
+  d = descend(left, right, window.pixels, start, d, prior, fit);
+  return {d, sigma_of(fit, yield_at(left, right, window.pixels, d), window, prior),
+          fit.correlation};
 }
 
 // The noise of the places that tell the curvature is little beside what the pixel's own gains.
@@ -192,18 +213,17 @@ RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   RefinedDisparity result{disparity_px, Image<float>(left.width, left.height, unknown),
                           Image<float>(left.width, left.height, unknown)};
-  const int half = refinement_window_px(block_px) / 2;
   parallel_for(disparity_px.pixels.size(), [&](std::size_t i) {
     const double start = disparity_px.pixels[i];
     if (std::isnan(start)) return;
     const int column = static_cast<int>(i % left.width), row = static_cast<int>(i / left.width);
-    const Refined refined = refine_pixel(left, right, window_at(disparity_px, column, row, half),
-                                         start, match_sigma_px);
+    const Refined refined = refine_pixel(
+        left, right, window_at(disparity_px, column, row, block_px), start, match_sigma_px);
     result.disparity_px.pixels[i] = static_cast<float>(refined.disparity_px);
     result.sigma_px.pixels[i] = static_cast<float>(refined.sigma_px);
     result.correlation.pixels[i] = static_cast<float>(refined.correlation);
   });
-  take_away_window_bias(result, half);
+  take_away_window_bias(result, refinement_window_px(block_px) / 2);
   return result;
 }
 

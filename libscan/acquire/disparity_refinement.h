@@ -23,9 +23,11 @@ struct RefinedDisparity {
 // moves only to lower the sum. At last what the window is off on a curved surface (window_bias.h)
 // is taken away.
 //
-// sigma: 1 / sigma^2 = sum R'^2 / s^2 + 1 / match_sigma_px^2 with the variance s^2 of the
-// residuals, never below the rounding of both images (1/6). It holds the images' noise, not a
-// calibration error.
+// sigma: by the errors of both that disparity weighs. Of the window: the noise of both images, of
+// equal variance, which the residuals tell (never below the rounding, 1/12), through the texture's
+// slopes, which hold noise too and are sampled between columns, where interpolation leaves less of
+// it. Of the matcher: by how far it scatters about a plane, and its lean towards whole columns. Not
+// a calibration error.
 // Width of that window, px.
 inline int refinement_window_px(int block_px) {
   return 2 * (block_px / 2 + 1) + 1;

@@ -159,8 +159,13 @@ TEST(StereoPilot, KnowsTheScannersOwnSigma) {
     std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
     return values[values.size() / 2];
   };
-  // the decoder takes the noise from its windows' residuals: a fifth of it is uncertain
-  EXPECT_NEAR(median(found) / median(told), 1, 0.3);
+  // The decoder takes the noise from its windows' residuals: a fifth of it is uncertain. It counts
+  // besides what noise draws between columns: with the variance s^2 of a pixel the residual's slope
+  // is 49 s^2 V' / 2 for the share V of noise that cubic convolution leaves, where the noise told
+  // is sigma^2 = 2 s^2 / T. So the square grows by (49 sigma)^2 V'^2 / 16, V'^2 = 0.63 on the mean
+  // over a column: for the 0.11 px told here by 1.1, less since windows span places.
+  EXPECT_GT(median(found) / median(told), 0.8);
+  EXPECT_LT(median(found) / median(told), std::sqrt(2.1));
 }
 
 }  // namespace
