@@ -9,9 +9,15 @@
 namespace scan {
 namespace {
 
-// Of a turn about `centre` and a shift in units of `size_m`, both by the guess's error: a turn w
-// about the scanner moves the centre by w x (centre - scanner). A third of each square falls to
-// each axis.
+Vector6 twist_to(const Pose& guess, const Pose& pose, double size_m) {
+  const Pose turn = make_pose(guess.linear() * pose.linear().transpose(), Eigen::Vector3d::Zero());
+  Vector6 twist = log(turn);
+  twist.tail<3>() = (guess.translation() - pose.translation()) / size_m;
+  return twist;
+}
+
+}  // namespace
+
 Matrix6 covariance_of(const GuessSigma& sigma, const Eigen::Vector3d& arm_m, double size_m) {
   Vector6 variances;
   variances << Eigen::Vector3d::Constant(sigma.rotation_rad * sigma.rotation_rad / 3),
@@ -21,15 +27,6 @@ Matrix6 covariance_of(const GuessSigma& sigma, const Eigen::Vector3d& arm_m, dou
   carry.bottomRows<3>() /= size_m;
   return carry * variances.asDiagonal() * carry.transpose();
 }
-
-Vector6 twist_to(const Pose& guess, const Pose& pose, double size_m) {
-  const Pose turn = make_pose(guess.linear() * pose.linear().transpose(), Eigen::Vector3d::Zero());
-  Vector6 twist = log(turn);
-  twist.tail<3>() = (guess.translation() - pose.translation()) / size_m;
-  return twist;
-}
-
-}  // namespace
 
 GuessPrior guess_prior(const JointFrame& frame, std::span<const Pose> world_from_local,
                        std::span<const Pose> guesses, std::span<const Eigen::Vector3d> scanners,

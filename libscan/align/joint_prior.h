@@ -29,6 +29,11 @@ struct GuessPrior {
   bool known() const { return !information.empty(); }
 };
 
+// Of a turn about a centre and a shift of it in units of `size_m`, by the error of a guess: a turn
+// w about the scanner moves the centre by w x `arm_m`, the way there from the scanner. A third of
+// each square falls to each axis.
+Matrix6 covariance_of(const GuessSigma& sigma, const Eigen::Vector3d& arm_m, double size_m);
+
 // `world_from_scanner`: the guesses, of the scanners themselves; `world_from_local` and `guesses`
 // of the points that the frame's centres are the origins of. The anchor's error moves all others.
 GuessPrior guess_prior(const JointFrame& frame, std::span<const Pose> world_from_local,

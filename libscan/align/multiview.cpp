@@ -165,7 +165,8 @@ std::vector<EdgeTask> Alignment::open_pairs(const EdgePlaces& tried) const {
 }
 
 void Alignment::solve() {
-  SolvedPoses solved = solve_edges(scans_, poses_, result_.edges, anchor_);
+  SolvedPoses solved =
+      solve_edges(scans_, poses_, result_.edges, anchor_, {guesses_, options_.guess_sigmas});
   poses_ = std::move(solved.world_from_local);
   tied_ = std::move(solved.tied);
 }

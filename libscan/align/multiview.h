@@ -84,9 +84,10 @@ struct MultiviewResult {
 // let overlap are aligned by icp; solve_pose_graph tells which of them agree; pairs that did not
 // are tried again from its poses; at last all poses but the anchor's are refined together over
 // correspondences between all overlapping scans. Scans that no accepted edge ties to the anchor
-// keep their guess and stop as no_correspondences. With `guess_sigmas` the guesses count as
-// measurements in the last step, so that what the data leave open stands as they have it most
-// likely; without, the scans stand to each other as nearly as in the guesses.
+// keep their guess and stop as no_correspondences. With `guess_sigmas` pairs that the guesses rule
+// out (guess_gate.h) do not count, and the guesses do as measurements in the last step, so that
+// what the data leave open stands as they have it most likely; without, the scans stand to each
+// other as nearly as in the guesses.
 MultiviewResult align_scans(std::span<const PointCloud> clouds, std::span<const Pose> guesses,
                             const MultiviewOptions& options = {}, const Progress& progress = {});
 

@@ -228,11 +228,13 @@ PoseEdge graph_edge(const PreparedScans& scans, const ScanEdge& edge, double gue
 }
 
 SolvedPoses solve_edges(const PreparedScans& scans, std::span<const Pose> starts,
-                        std::vector<ScanEdge>& edges, std::size_t anchor) {
+                        std::vector<ScanEdge>& edges, std::size_t anchor,
+                        const KnownGuesses& guesses) {
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < edges.size(); ++k) {
     edges[k].accepted = false;
-    if (has_answer(edges[k])) order.push_back(k);
+    if (has_answer(edges[k]) && !is_ruled_out(scans, graph_edge(scans, edges[k], 0), guesses))
+      order.push_back(k);
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return edges[a].overlap * edges[a].agreement > edges[b].overlap * edges[b].agreement;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "libscan/align/guess_gate.h"
 #include "libscan/align/pose_graph.h"
 #include "libscan/align/prepared_scans.h"
 
@@ -22,15 +23,16 @@ struct EdgeTask {
 std::vector<ScanEdge> align_pairs(const PreparedScans& scans, std::span<const EdgeTask> tasks,
                                   const MultiviewOptions& options, const Progress& progress);
 
-// Solves the graph of the edges that have an answer, the surest first, and marks which of them were
-// accepted. Poses are world_from_local, of the prepared points; scans that are not tied keep
-// theirs.
+// Solves the graph of the edges that have an answer which the guesses do not rule out, the surest
+// first, and marks which of them were accepted. Poses are world_from_local, of the prepared points;
+// scans that are not tied keep theirs.
 struct SolvedPoses {
   std::vector<Pose> world_from_local;
   std::vector<bool> tied;
 };
 SolvedPoses solve_edges(const PreparedScans& scans, std::span<const Pose> starts,
-                        std::vector<ScanEdge>& edges, std::size_t anchor);
+                        std::vector<ScanEdge>& edges, std::size_t anchor,
+                        const KnownGuesses& guesses);
 
 // How far off the guesses put the scans, standard deviation: the median of what the pairs are off
 // theirs along the motions that they fix; 0 if none fixes any.

@@ -28,10 +28,10 @@ struct FrontEdge {
   std::array<std::size_t, 3> points;
 
   FrontEdge(double value, Facets* facets) : first(value), second(facets) {
-    const auto& [edge, opposite] = facets->first;  // a cell and two of its corners, and one more
-    const auto point = [&](int corner) { return edge.first->vertex(corner)->id(); };
-    points = {point(edge.second), point(edge.third),
-              point(6 - opposite - edge.second - edge.third)};
+    const auto& [edge, opposite] = facets->first;
+    const auto& [cell, begin, end] = edge;
+    points = {cell->vertex(begin)->id(), cell->vertex(end)->id(),
+              cell->vertex(6 - opposite - begin - end)->id()};
     if (points[0] > points[1]) std::swap(points[0], points[1]);
   }
   bool operator<(const FrontEdge& other) const {

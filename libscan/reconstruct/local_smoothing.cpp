@@ -23,6 +23,7 @@ constexpr double reach_in_lengths = 2;
 constexpr int most_passes = 64;
 // A sigma far below the others' would leave nothing to these.
 constexpr double least_share_of_sigma = 0.1;
+constexpr double exact = 1e-100;  // has an inverse, and sums of those
 
 std::uint64_t key_of(const Eigen::Vector3i& cell) {
   return static_cast<std::uint64_t>(cell[2]) << 42 | static_cast<std::uint64_t>(cell[1]) << 21 |
@@ -79,11 +80,8 @@ LocalSmoothing::LocalSmoothing(const Samples& samples) : samples_(samples) {
 }
 
 void LocalSmoothing::weigh() {
-  const double least = least_share_of_sigma * median(samples_.sigma);
-  weight_.assign(samples_.points.size(), 1.0);
-  if (!(least > 0)) return;
-  for (std::size_t i = 0; i < weight_.size(); ++i)
-    weight_[i] = 1 / std::max(least, samples_.sigma[i]);
+  const double least = std::max(exact, least_share_of_sigma * median(samples_.sigma));
+  for (const double sigma : samples_.sigma) weight_.push_back(1 / std::max(least, sigma));
   const std::vector<double> usual = mean_around(weight_);
   for (std::size_t i = 0; i < weight_.size(); ++i) {
     const double share = std::min(1.0, weight_[i] / usual[i]);

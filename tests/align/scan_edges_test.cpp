@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
 
 namespace scan {
 namespace {
@@ -126,6 +127,91 @@ TEST(OpenSigma, IsThatOfTheGuessesWhereAnAcceptedPairAloneLeavesAMotionOpen) {
   EXPECT_GT(open_sigma_m(scans, edges), 0);
   edges[1].accepted = false;
   EXPECT_EQ(open_sigma_m(scans, edges), 0);
+}
+
+// Off by 3 mm along one motion and 1 along another that they fix: root mean square of both. A pair
+// without an answer says nothing.
+TEST(GuessSigma, IsARootMeanSquareOverWhatPairsFix) {
+  const PreparedScans scans = two_scans();
+  ScanEdge edge{.source = 0, .target = 1, .stop = Stop::degenerate};
+  edge.centre = scans.clouds[1].origin + arm;
+  edge.target_from_source = Eigen::Translation3d(0.1, 1e-3, 3e-3) * Pose::Identity();
+  edge.information(4, 4) = edge.information(5, 5) = 1e6;
+  ScanEdge failed = edge;
+  failed.stop = Stop::no_correspondences;
+  failed.target_from_source.translation().z() = 1;
+  EXPECT_NEAR(guess_sigma_m(scans, std::vector{edge, failed, failed}), std::sqrt(5) * 1e-3, 1e-12);
+}
+
+// Noise-free scans have residuals of rounding: 1e-12 of how far off zero their points are.
+TEST(GraphEdge, IsNoSurerThanRounding) {
+  const PreparedScans scans = two_scans();
+  ScanEdge edge{.source = 0, .target = 1};
+  edge.centre = scans.clouds[1].origin;
+  edge.information = 1e40 * Matrix6::Identity();
+  const double off_m = 1e-12 * (size_m + scans.clouds[1].origin.norm());
+  const Matrix6 information = graph_edge(scans, edge, 0).information;
+  EXPECT_NEAR(information(3, 3) * off_m * off_m, 1, 1e-6);
+  EXPECT_NEAR(information(0, 0) * off_m * off_m / (size_m * size_m), 1, 1e-6);
+}
+
+// Three answers for one pair that contradict each other, and a sure one that is none.
+TEST(SolveEdges, BelievesTheSurestByOverlapAndAgreement) {
+  const PreparedScans scans = two_scans();
+  std::vector<ScanEdge> edges;
+  for (const auto& [overlap, agreement] :
+       {std::pair(0.9, 0.5), {0.6, 0.8}, {0.5, 0.9}, {1.0, 1.0}}) {
+    ScanEdge edge{.source = 0, .target = 1, .stop = Stop::converged};
+    edge.overlap = overlap, edge.agreement = agreement, edge.rms_m = rms_m;
+    edge.information = 1e6 * Matrix6::Identity();
+    edge.target_from_source.translation().x() = 0.2 * double(edges.size());
+    edge.accepted = true;
+    edges.push_back(edge);
+  }
+  edges[3].stop = Stop::low_overlap;
+  const std::vector<Pose> starts(2, Pose::Identity());
+  const SolvedPoses solved = solve_edges(scans, starts, edges, 1, {});
+  for (std::size_t k = 0; k < edges.size(); ++k) EXPECT_EQ(edges[k].accepted, k == 1) << k;
+  // The local origins: that of the target is (1, 2, 3) in its cloud.
+  const Eigen::Vector3d should = Eigen::Vector3d(0.2, 0, 0) - scans.clouds[1].origin;
+  EXPECT_LT((solved.world_from_local[0].translation() - should).norm(), 1e-9);
+}
+
+// The same where the guesses rule out the surest.
+TEST(SolveEdges, LeavesOutWhatTheGuessesRuleOut) {
+  const PreparedScans scans = two_scans();
+  std::vector<ScanEdge> edges;
+  for (const double off_m : {0.0, 0.3}) {
+    ScanEdge edge{.source = 0, .target = 1, .stop = Stop::iteration_limit};
+    edge.overlap = 0.5 + off_m, edge.agreement = 1, edge.rms_m = rms_m;
+    edge.information = 1e6 * Matrix6::Identity();
+    edge.target_from_source.translation().x() = off_m;
+    edges.push_back(edge);
+  }
+  const std::vector<Pose> guesses = {Pose(Eigen::Translation3d(-scans.clouds[1].origin)),
+                                     Pose::Identity()};
+  solve_edges(scans, guesses, edges, 1, {});
+  EXPECT_TRUE(edges[1].accepted && !edges[0].accepted);
+  const std::vector<GuessSigma> sigmas(2, {.rotation_rad = 1e-3, .translation_m = 1e-3});
+  solve_edges(scans, guesses, edges, 1, {guesses, sigmas});
+  EXPECT_TRUE(edges[0].accepted && !edges[1].accepted);
+}
+
+// sqrt(22.458) of 0.05 rad or 0.05 of the smaller size, of scans that stand across.
+TEST(WithinGuess, EndsAtAThousandthOfWhatGuessesAreOff) {
+  const PreparedScans scans = two_scans();
+  const std::vector<Pose> poses = {exp((Vector6() << 0.3, -1, 0.5, 1, 2, 3).finished()),
+                                   exp((Vector6() << -0.7, 0.2, 1, 0, 1, -2).finished())};
+  const double limit = std::sqrt(22.458) * 0.05;
+  for (int axis = 0; axis < 6; ++axis)
+    for (const double share : {0.99, 1.01}) {
+      Vector6 off = Vector6::Zero();
+      off[axis] = share * limit * (axis < 3 ? 1 : size_m);
+      ScanEdge edge{.source = 0, .target = 1};
+      edge.target_from_source =
+          global_pose(exp(off) * poses[1].inverse() * poses[0], scans.clouds[0], scans.clouds[1]);
+      EXPECT_EQ(within_guess(scans, edge, poses), share < 1) << axis;
+    }
 }
 
 }  // namespace

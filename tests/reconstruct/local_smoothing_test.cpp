@@ -96,6 +96,67 @@ TEST(LocalSmoothing, IsNotDrownedByFewThatScatterWidely) {
   EXPECT_EQ(smoothing.judge(0.0175, after, all_trusted(samples)), 1);
 }
 
+// Whether a trial is taken over a square of samples whose squared residuals fall by `gain`, or grow
+// by it where it is negative; of the samples from x = 0.8 on.
+double share_taken(const Samples& samples, const std::vector<double>& gain) {
+  std::vector<double> before, after;
+  for (const double g : gain) {
+    before.push_back(std::sqrt(std::max(g, 0.0)));
+    after.push_back(std::sqrt(std::max(-g, 0.0)));
+  }
+  LocalSmoothing smoothing(samples);
+  smoothing.judge(0.035, before, all_trusted(samples));
+  smoothing.judge(0.0175, after, all_trusted(samples));
+  double taken = 0, count = 0;
+  const std::vector<double> lengths = smoothing.lengths();
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    if (samples.points[i][0] > 0.8) {
+      taken += lengths[i] < 0.02;
+      count += 1;
+    }
+  return taken / count;
+}
+
+// Where every second sample scatters three times as much, 1 / s is the mean of 1 and 1/3: they
+// count (1.5 / 3)^2 = 1/4, the others fully, and outweigh them from four times the gain on. Those
+// of the larger half of the square, ten times as sharp, change nothing: s is that of samples
+// around.
+TEST(LocalSmoothing, CountsBySquaredShareOfTheScatterAround) {
+  Samples samples = unit_square(100, 1e-3);
+  for (std::size_t i = 0; i < samples.points.size(); ++i)
+    if (samples.points[i][0] > 0.55) samples.sigma[i] = (i + i / 100) % 2 ? 1e-2 : 3e-2;
+  for (const auto& [ratio, taken] : {std::pair(3, 1), {5, 0}}) {
+    std::vector<double> gain;  // so large that what scatter costs is not seen
+    for (const double sigma : samples.sigma) gain.push_back(sigma > 2e-2 ? -ratio : 1);
+    EXPECT_EQ(share_taken(samples, gain), taken) << ratio;
+  }
+}
+
+// Every tenth sample says that it is exact: it counts fully, no more, and as if its sigma were a
+// tenth of the median. 1 / s is the mean of one 10 and nine 1, so that the others count (1
+// / 1.9)^2; from nine times that, 2.5, of their gain on the tenth outweighs them.
+TEST(LocalSmoothing, LeavesASayBesideSamplesThatAreAllTooSure) {
+  Samples samples = unit_square(100, 1e-3);
+  for (std::size_t i = 0; i < samples.points.size(); ++i)
+    if (i % 10 == i / 100 % 10) samples.sigma[i] = 1e-12;
+  for (const auto& [ratio, taken] : {std::pair(2, 1), {3, 0}}) {
+    std::vector<double> gain;
+    for (const double sigma : samples.sigma) gain.push_back(sigma < 1e-6 ? -ratio : 1);
+    EXPECT_EQ(share_taken(samples, gain), taken) << ratio;
+  }
+}
+
+// Exact ones, if they are most, have all the say; if all are, they count alike.
+TEST(LocalSmoothing, GoesByTheExactSamplesIfTheyAreMost) {
+  Samples samples = unit_square(100, 0);
+  std::vector<double> gain(samples.points.size(), 1.0);
+  EXPECT_EQ(share_taken(samples, gain), 1);
+  EXPECT_EQ(share_taken(samples, std::vector<double>(gain.size(), -1.0)), 0);
+  for (std::size_t i = 0; i < gain.size(); ++i)
+    if (i % 10 == i / 100 % 10) samples.sigma[i] = 1e-3, gain[i] = -100;
+  EXPECT_EQ(share_taken(samples, gain), 1);
+}
+
 // What a region's own samples say by chance does not decide over a length that spans many regions:
 // one stripe (regions are 0.071 wide) that a trial makes worse, as much as its two neighbours gain,
 // keeps the old length if the trial is short and takes the new one if it is long.
