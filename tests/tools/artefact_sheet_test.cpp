@@ -81,6 +81,9 @@ TEST(ArtefactSheet, IsJudgedRowByRow) {
   const std::string part = page.substr(page.find("<section id=\"artefacts\""));
   EXPECT_NE(part.find("within <data value=\"0.5\">500 mm</data>"), std::string::npos);
   EXPECT_NE(part.find("FAIL</span>"), std::string::npos);
+  EXPECT_NE(part.find("Why this limit: An upright post."), std::string::npos);
+  EXPECT_EQ(part.find("95 % interval"), std::string::npos) << "nothing here is sampled";
+  EXPECT_NE(page.find("data sheet</a> fails:</strong> 3 of 5 limits are met."), std::string::npos);
 }
 
 TEST(ArtefactSheet, WithoutLimitsHasNoColumnsOfThem) {

@@ -107,6 +107,7 @@ void hold_against_truth(const fs::path& run, RunRecord& record) {
                                     std::to_string(truth.scans.size()) + " scans of " +
                                     std::to_string(record.scans.size()));
   const RunResult result{.scans = record.scans, .world_from_scan = record.world_from_scan};
+  record.pose_errors = run_pose_errors(result, truth);
   move_world(true_world_from_world(result, truth), record);
   if (!record.surface.empty())
     record.deviations_m = deviations_m(record.surface.vertices, truth.surface);
