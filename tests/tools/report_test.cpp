@@ -222,6 +222,10 @@ TEST(Report, OfBrokenFilesIsOneError) {
     EXPECT_EQ(report.outcome.exit_code, input) << one.file << " " << one.content;
     EXPECT_TRUE(holds(report.outcome.err, "error: ")) << report.outcome.err;
     EXPECT_TRUE(holds(report.outcome.err, one.says)) << one.says << "\n" << report.outcome.err;
+    const bool is_told_of_resume =
+        one.file == "surface.ply" || one.file == "poses.tum" || holds(one.says, "not valid JSON");
+    EXPECT_EQ(holds(report.outcome.err, "--resume goes on with it"), is_told_of_resume)
+        << report.outcome.err;
     EXPECT_EQ(std::count(report.outcome.err.begin(), report.outcome.err.end(), '\n'), 1)
         << report.outcome.err;
     EXPECT_FALSE(fs::exists(folder / "out.html"));
