@@ -3,12 +3,13 @@
 // Each place simulated, decoded and sorted by what its rays truly hit.
 #include "tools/artefact_bench.h"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
 #include "libscan/core/error.h"
-#include "libscan/core/random.h"
 #include "synth/ray_caster.h"
+#include "tools/noise_field.h"
 
 namespace scan {
 namespace {
@@ -29,20 +30,25 @@ void add(BodyPoints& body, const Pose& first_from_view, const Scan& scan, std::s
          const RayTruth& truth, std::uint32_t number) {
   body.measured.push_back(first_from_view * scan.cloud.points[i]);
   if (scan.cloud.sigma_m.empty()) return;
+  const std::uint32_t columns = std::max(1u, scan.grid.columns);
+  if (body.stated.empty() || body.stated.back().scan != number)
+    body.stated.push_back({.scan = number, .columns = columns, .noise_window = scan.noise_window});
   const Eigen::Vector3d along = truth.point_in_scanner.normalized();
-  body.stated.push_back({first_from_view * truth.point_in_scanner,
-                         scan.cloud.sigma_m[i] * (first_from_view.linear() * along), number,
-                         scan.ray[i]});
+  StatedPoints& stated = body.stated.back();
+  stated.rays.push_back(scan.ray[i]);
+  stated.truth.push_back(first_from_view * truth.point_in_scanner);
+  stated.sigma_m.push_back(scan.cloud.sigma_m[i] * (first_from_view.linear() * along));
 }
 
 }  // namespace
 
 Points drawn_points(const BodyPoints& body, std::uint64_t seed, std::uint32_t draw) {
   Points points;
-  points.reserve(body.stated.size());
-  for (const StatedPoint& stated : body.stated) {
-    RandomStream random(seed + 1, stated.scan, (std::uint64_t{draw} << 32) + stated.ray);
-    points.push_back(stated.truth + random.normal() * stated.sigma_m);
+  for (const StatedPoints& stated : body.stated) {
+    const NoiseField noise(stated.rays, stated.columns, stated.noise_window,
+                           {seed + 1, stated.scan, draw});
+    for (std::size_t i = 0; i < stated.rays.size(); ++i)
+      points.push_back(stated.truth[i] + noise.at(stated.rays[i]) * stated.sigma_m[i]);
   }
   return points;
 }

@@ -13,21 +13,24 @@
 
 namespace scan {
 
-// Where a ray truly ended and how far off, 1 sigma along it, the scan states its point to be.
-struct StatedPoint {
-  Eigen::Vector3d truth, sigma_m;
-  std::uint32_t scan = 0, ray = 0;
+// Where rays truly ended and how far off, 1 sigma along each, the scan states its points to be.
+// Each scan has noise of its own.
+struct StatedPoints {
+  std::uint32_t scan = 0, columns = 1;  // of its grid
+  RayGrid noise_window{1, 1};
+  std::vector<std::uint32_t> rays = {};
+  Points truth = {}, sigma_m = {};
 };
 
 // The points of one body at one place, as measured and as stated (none where the scan states no
 // sigma); frame of the first viewpoint's scanner.
 struct BodyPoints {
   Points measured;
-  std::vector<StatedPoint> stated;
+  std::vector<StatedPoints> stated;
 };
 
-// What the scan might as well have measured if its sigmas were all of its error: points drawn
-// around the true ones, each by a stream of its own.
+// What the scans might as well have measured if their sigmas were all of their error: points drawn
+// around the true ones, with noise that rays share as the scan's noise window says.
 Points drawn_points(const BodyPoints& body, std::uint64_t seed, std::uint32_t draw);
 
 // Whether a true point of a body counts, in the body's frame.

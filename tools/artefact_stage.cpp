@@ -224,10 +224,8 @@ void flatten_truth(const Recipe& recipe, WaveSeries& series) {
                                                 series.scanner_from_plate.translation().z()));
   const Pose plate_from_scanner = series.scanner_from_plate.inverse();
   const Eigen::Vector3d up = series.scanner_from_plate.linear().col(2);
-  for (StatedPoint& stated : series.bodies.back().stated) {
-    const double x_m = (plate_from_scanner * stated.truth).x();
-    stated.truth -= height_m * std::cos(2 * std::numbers::pi * x_m / period_m) * up;
-  }
+  for (Eigen::Vector3d& x : series.bodies.back().stated.front().truth)
+    x -= height_m * std::cos(2 * std::numbers::pi * (plate_from_scanner * x).x() / period_m) * up;
 }
 
 WaveSeries wave_series(const Recipe& recipe, Bench& bench, const synth::Artefacts& sized,
