@@ -3,11 +3,13 @@
 // Each place simulated, decoded and sorted by what its rays truly hit.
 #include "tools/artefact_bench.h"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
 #include "libscan/core/error.h"
 #include "synth/ray_caster.h"
+#include "tools/noise_field.h"
 
 namespace scan {
 namespace {
@@ -28,13 +30,14 @@ void add(BodyPoints& body, const Pose& first_from_view, const Scan& scan, std::s
          const RayTruth& truth, std::uint32_t number) {
   body.measured.push_back(first_from_view * scan.cloud.points[i]);
   if (scan.cloud.sigma_m.empty()) return;
-  if (body.stated.empty() || body.stated.back().noise.scan != number)
-    body.stated.push_back({.noise = {number, scan.grid, scan.noise_window}});
-  StatedPoints& stated = body.stated.back();
+  const std::uint32_t columns = std::max(1u, scan.grid.columns);
+  if (body.stated.empty() || body.stated.back().scan != number)
+    body.stated.push_back({.scan = number, .columns = columns, .noise_window = scan.noise_window});
   const Eigen::Vector3d along = truth.point_in_scanner.normalized();
-  stated.truths.push_back(first_from_view * truth.point_in_scanner);
-  stated.sigmas_m.push_back(scan.cloud.sigma_m[i] * (first_from_view.linear() * along));
+  StatedPoints& stated = body.stated.back();
   stated.rays.push_back(scan.ray[i]);
+  stated.truth.push_back(first_from_view * truth.point_in_scanner);
+  stated.sigma_m.push_back(scan.cloud.sigma_m[i] * (first_from_view.linear() * along));
 }
 
 }  // namespace
@@ -42,9 +45,10 @@ void add(BodyPoints& body, const Pose& first_from_view, const Scan& scan, std::s
 Points drawn_points(const BodyPoints& body, std::uint64_t seed, std::uint32_t draw) {
   Points points;
   for (const StatedPoints& stated : body.stated) {
-    const auto normals = shared_normals(stated.noise, stated.rays, seed + 1, draw);
-    for (std::size_t i = 0; i < normals.size(); ++i)
-      points.push_back(stated.truths[i] + normals[i] * stated.sigmas_m[i]);
+    const NoiseField noise(stated.rays, stated.columns, stated.noise_window,
+                           {seed + 1, stated.scan, draw});
+    for (std::size_t i = 0; i < stated.rays.size(); ++i)
+      points.push_back(stated.truth[i] + noise.at(stated.rays[i]) * stated.sigma_m[i]);
   }
   return points;
 }

@@ -10,27 +10,27 @@
 #include "libscan/verify/artefacts.h"
 #include "tools/console.h"
 #include "tools/recipe.h"
-#include "tools/shared_normals.h"
 
 namespace scan {
 
-// Where rays of one scan truly ended, and how far off, 1 sigma along each, the scan states its
-// points to be.
+// Where rays truly ended and how far off, 1 sigma along each, the scan states its points to be.
+// Each scan has noise of its own.
 struct StatedPoints {
-  Points truths, sigmas_m;
-  std::vector<std::uint32_t> rays;
-  RayNoise noise;
+  std::uint32_t scan = 0, columns = 1;  // of its grid
+  RayGrid noise_window{1, 1};
+  std::vector<std::uint32_t> rays = {};
+  Points truth = {}, sigma_m = {};
 };
 
-// The points of one body at one place, as measured and as stated by each scan (none where they
-// state no sigma); frame of the first viewpoint's scanner.
+// The points of one body at one place, as measured and as stated (none where the scan states no
+// sigma); frame of the first viewpoint's scanner.
 struct BodyPoints {
   Points measured;
   std::vector<StatedPoints> stated;
 };
 
 // What the scans might as well have measured if their sigmas were all of their error: points drawn
-// around the true ones, by numbers shared as their windows share noise.
+// around the true ones, with noise that rays share as the scan's noise window says.
 Points drawn_points(const BodyPoints& body, std::uint64_t seed, std::uint32_t draw);
 
 // Whether a true point of a body counts, in the body's frame.

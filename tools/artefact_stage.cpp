@@ -145,7 +145,8 @@ void test_faces(std::vector<SheetLine>& sheet, Bench& bench, const synth::Artefa
             [&](const Select& select) { return flatness_errors(first_bodies(plates, select)); });
   const auto places = plate_places(sized, bench.world_from_scanner());
   add_lines(sheet, bench, plates, [&](const Select& select) {
-    std::vector<PlacedPlate> placed;  // the first three, the nearest last, in a line
+    std::vector<PlacedPlate>
+        placed;  // the first three stand one behind the other, the nearest last
     for (const std::size_t i : {2, 1, 0}) {
       const Pose plate = in_scanner(bench, places[i].front());
       const double half_m =
@@ -223,10 +224,8 @@ void flatten_truth(const Recipe& recipe, WaveSeries& series) {
                                                 series.scanner_from_plate.translation().z()));
   const Pose plate_from_scanner = series.scanner_from_plate.inverse();
   const Eigen::Vector3d up = series.scanner_from_plate.linear().col(2);
-  for (StatedPoints& stated : series.bodies.back().stated)
-    for (Eigen::Vector3d& truth : stated.truths)
-      truth -= height_m * up *
-               std::cos(2 * std::numbers::pi * (plate_from_scanner * truth).x() / period_m);
+  for (Eigen::Vector3d& x : series.bodies.back().stated.front().truth)
+    x -= height_m * std::cos(2 * std::numbers::pi * (plate_from_scanner * x).x() / period_m) * up;
 }
 
 WaveSeries wave_series(const Recipe& recipe, Bench& bench, const synth::Artefacts& sized,

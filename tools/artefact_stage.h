@@ -13,7 +13,7 @@
 namespace scan {
 
 // `predicted`: from the smallest to the largest of the same figure of 39 draws of points around the
-// true ones, with the sigma that the scan itself states, shared by rays as its noise_window says
+// true ones, with the sigma that the scan itself states, shared by rays as its noise window says
 // and without bias. Another draw lies there 38 times out of 40: 95 %. A measured figure beyond
 // shows what that sigma leaves out. None where the scan states none. Drawn points lie where the
 // scan's own do, so that of the structural resolution is the limit of its sampling; what a

@@ -95,6 +95,7 @@ std::string readable_length(double metres) {
   if (!std::isfinite(metres)) return "unknown";
   if (size == 0) return "0 m";
   // from 999.5 on three digits are 1000, which is 1 of the next unit
+  if (size < 0.9995e-12) return three_digits(metres, "m");  // rounding
   if (size < 0.9995e-6) return three_digits(metres * 1e9, "nm");
   if (size < 0.9995e-3) return three_digits(metres * 1e6, "um");
   if (size < 0.9995) return three_digits(mm_from_m(metres), "mm");

@@ -41,6 +41,16 @@ nlohmann::ordered_json read_ordered_json(const std::filesystem::path& path) {
   return nlohmann::ordered_json::parse(read_file(path), nullptr, true, true);
 }
 
+void read_of_run(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const Error& error) {
+    if (error.trouble() != Trouble::input || !error.hint().empty()) throw;
+    throw Error(Trouble::input, error.what(),
+                "was the run cut short? scan run --resume goes on with it, --force begins anew");
+  }
+}
+
 std::vector<Scan> read_run_scans(const std::filesystem::path& run) {
   std::vector<Scan> scans;
   while (std::filesystem::exists(scan_path(run, scans.size())))

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -24,6 +25,10 @@ std::filesystem::path truth_path(const std::filesystem::path& run);
 // As it stands in the file, keys in their order. scan::Error (input) names the place of what is
 // broken.
 nlohmann::ordered_json read_ordered_json(const std::filesystem::path& path);
+
+// Calls `read`; to a scan::Error (input) of it without a hint it adds that --resume goes on where a
+// run was cut short.
+void read_of_run(const std::function<void()>& read);
 
 // All scans in scans/, in their order. scan::Error (input) if there are none.
 std::vector<Scan> read_run_scans(const std::filesystem::path& run);

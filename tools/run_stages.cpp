@@ -41,14 +41,18 @@ void check_stage_ran(const std::filesystem::path& run, const char* file, const c
 RunResult read_result(const std::filesystem::path& run) {
   check_stage_ran(run, "poses.tum", "align was done");
   check_stage_ran(run, "surface.ply", "reconstruct was done");
-  RunResult result{.scans = read_run_scans(run),
-                   .world_from_scan = read_run_poses(run),
-                   .surface = read_supported_mesh(run / "surface.ply"),
-                   .stated_poses = read_run_stated_poses(run)};
-  if (result.world_from_scan.size() != result.scans.size())
-    throw Error(Trouble::input, (run / "poses.tum").string() + ": has " +
-                                    std::to_string(result.world_from_scan.size()) + " poses for " +
-                                    std::to_string(result.scans.size()) + " scans");
+  RunResult result;
+  read_of_run([&] {
+    result = {.scans = read_run_scans(run),
+              .world_from_scan = read_run_poses(run),
+              .surface = read_supported_mesh(run / "surface.ply"),
+              .stated_poses = read_run_stated_poses(run)};
+    if (result.world_from_scan.size() != result.scans.size())
+      throw Error(Trouble::input, (run / "poses.tum").string() + ": has " +
+                                      std::to_string(result.world_from_scan.size()) +
+                                      " poses for " + std::to_string(result.scans.size()) +
+                                      " scans");
+  });
   return result;
 }
 
@@ -106,7 +110,8 @@ Verdict verify_run(const std::filesystem::path& run, Console&) {
   check_is_run(run);
   check_stage_ran(run, "truth", "simulate was done");
   const Recipe recipe = read_recipe(recipe_path(run));
-  const Truth truth = read_truth(truth_path(run));
+  Truth truth;
+  read_of_run([&] { truth = read_truth(truth_path(run)); });
   RunResult result = read_result(run);
   result.anchor = static_cast<std::size_t>(recipe.align.anchor);
   Verdict verdict = judge(measure_run(result, truth, recipe.verify), recipe.limits);

@@ -35,9 +35,10 @@ std::string prediction_remark(const ordered_json& measurement) {
   if (!is_pair(predicted) || !value.is_number()) return "";
   const double low = predicted[0].get<double>(), high = predicted[1].get<double>();
   const double is = value.get<double>();
-  if (low <= is && is <= high) return "";
-  return std::abs(is) > std::max(std::abs(low), std::abs(high)) ? "larger than predicted"
-                                                                : "smaller than predicted";
+  // what lies to both sides of 0 does so alike: which draw went farthest is chance
+  const double most = std::max(std::abs(low), std::abs(high));
+  if (std::abs(is) > most) return "larger than predicted";
+  return (low <= is && is <= high) || (low < 0 && high > 0) ? "" : "smaller than predicted";
 }
 
 void say_verdict(const ordered_json& verdict, const Console& console) {

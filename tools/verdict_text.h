@@ -15,7 +15,7 @@ namespace scan {
 std::string statement_remark(const nlohmann::ordered_json& measurement);
 
 // Of one that lies beyond its "predicted", in a scanner's data sheet: "larger than predicted" or
-// "smaller than predicted"; else empty.
+// "smaller than predicted"; else empty. Of one predicted on both sides of 0 its size counts.
 std::string prediction_remark(const nlohmann::ordered_json& measurement);
 
 // Each measurement of a verdict.json, with its sampling interval and its prediction where there are

@@ -115,6 +115,9 @@ void tell_of_no_face(const std::string& path, Console& console) {
 std::vector<Measurement> measure_files(const Arguments& arguments, Console& console) {
   if (is_disparity(arguments.measured)) return measure_disparity(arguments);
   tell_of_no_face(arguments.measured, console);
+  if (lists_no_face(arguments.truth))
+    throw Error(Trouble::input, arguments.truth + ": holds no triangle",
+                "the truth must be a surface; a cloud can only be measured");
   const TrueSurface truth = read_true_surface(arguments.truth);
   for (const Mesh& mesh : truth.meshes) warn_of_flat_triangles(arguments.truth, mesh, console);
   warn_of_holes(arguments.truth, truth, console);

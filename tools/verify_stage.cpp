@@ -54,7 +54,7 @@ std::vector<Measurement> measure_poses(const RunResult& result, const Truth& tru
   const std::span<const Pose> is = result.world_from_scan;
   const auto felt = picked_points(result.scans);
   const Bounds box = bounds_of(truth.surface);
-  auto figures = summarise(pose_errors(is, should, felt));
+  auto figures = summarise(run_pose_errors(result, truth));
   add(figures, summarise_relative(relative_pose_errors(is, should, felt)));
   add(figures,
       target_registration_error(
@@ -120,6 +120,10 @@ std::vector<Measurement> measure_shape(const SupportedMesh& surface, const TrueS
                                 spacings, supported_within_spacings),
           "supported vertices with a standard error, the anchor's pose held right"));
   return figures;
+}
+
+std::vector<PoseError> run_pose_errors(const RunResult& result, const Truth& truth) {
+  return pose_errors(result.world_from_scan, true_poses(truth), picked_points(result.scans));
 }
 
 Pose true_world_from_world(const RunResult& result, const Truth& truth) {

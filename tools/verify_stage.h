@@ -7,6 +7,7 @@
 
 #include "libscan/core/scan.h"
 #include "libscan/io/surface_file.h"
+#include "libscan/verify/pose_error.h"
 #include "libscan/verify/stated_uncertainty.h"
 #include "libscan/verify/truth.h"
 #include "libscan/verify/verdict.h"
@@ -40,6 +41,9 @@ std::vector<Eigen::Vector3d> corners_of(const Bounds& box);
 // scan::Error (input) if the truth knows another number of scans.
 std::vector<Measurement> measure_run(const RunResult& result, const Truth& truth,
                                      const VerifySettings& settings);
+
+// Of each scan, felt at some of its points; the world frame is fitted as above.
+std::vector<PoseError> run_pose_errors(const RunResult& result, const Truth& truth);
 
 // That motion.
 Pose true_world_from_world(const RunResult& result, const Truth& truth);

@@ -4,7 +4,7 @@
 // device that is not what its calibration says misses one.
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"

@@ -3,6 +3,8 @@
 // A scanner's data sheet judged by its recipe's limits, as a user meets it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/small_run.h"
@@ -81,6 +83,9 @@ TEST(ArtefactSheet, IsJudgedRowByRow) {
   const std::string part = page.substr(page.find("<section id=\"artefacts\""));
   EXPECT_NE(part.find("within <data value=\"0.5\">500 mm</data>"), std::string::npos);
   EXPECT_NE(part.find("FAIL</span>"), std::string::npos);
+  EXPECT_NE(part.find("Why this limit: An upright post."), std::string::npos);
+  EXPECT_EQ(part.find("95 % interval"), std::string::npos) << "nothing here is sampled";
+  EXPECT_NE(page.find("data sheet</a> fails:</strong> 3 of 5 limits are met."), std::string::npos);
 }
 
 TEST(ArtefactSheet, WithoutLimitsHasNoColumnsOfThem) {
@@ -92,7 +97,7 @@ TEST(ArtefactSheet, WithoutLimitsHasNoColumnsOfThem) {
   std::size_t beyond = 0;
   for (const auto& m : sheet.json.at("measurements")) {
     const double low = m.at("predicted")[0], high = m.at("predicted")[1], is = m.at("value");
-    beyond += is < low || high < is;
+    beyond += low < 0 && high > 0 ? std::abs(is) > std::max(-low, high) : is < low || high < is;
     EXPECT_LE(low, high) << m.dump();
   }
   EXPECT_LE(beyond, 3u);

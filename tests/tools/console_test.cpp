@@ -15,6 +15,8 @@ namespace {
 TEST(ReadableLength, HasThreeDigitsOfTheUnitThatSuits) {
   EXPECT_EQ(readable_length(0), "0 m");
   EXPECT_EQ(readable_length(1.234e-9), "1.23 nm");
+  EXPECT_EQ(readable_length(1.2e-12), "0.0012 nm");
+  EXPECT_EQ(readable_length(-1.62e-17), "-1.62e-17 m");
   EXPECT_EQ(readable_length(0.99949e-6), "999 nm");
   EXPECT_EQ(readable_length(0.9996e-6), "1 um");
   EXPECT_EQ(readable_length(0.9996e-3), "1 mm");

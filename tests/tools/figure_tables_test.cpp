@@ -43,6 +43,22 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
+// Of what is predicted on both sides of 0 the side is chance.
+TEST(PredictionRemark, TellsWhatLiesBeyond) {
+  const auto remark = [](double value, double low, double high) {
+    return prediction_remark({{"value", value}, {"predicted", {low, high}}});
+  };
+  EXPECT_EQ(remark(2, 1, 3), "");
+  EXPECT_EQ(remark(0.5, 1, 3), "smaller than predicted");
+  EXPECT_EQ(remark(4, 1, 3), "larger than predicted");
+  EXPECT_EQ(remark(-2, -3, -1), "");
+  EXPECT_EQ(remark(-4, -3, -1), "larger than predicted");
+  EXPECT_EQ(remark(-2.5, -1, 3), "");
+  EXPECT_EQ(remark(-3.5, -1, 3), "larger than predicted");
+  EXPECT_EQ(prediction_remark({{"value", 1}, {"predicted", nullptr}}), "");
+  EXPECT_EQ(prediction_remark({{"value", 1}}), "");
+}
+
 TEST(FigureTable, HasNoColumnsThatNobodyFills) {
   const std::string html = table_of({flatness(1e-5)}, {});
   EXPECT_FALSE(holds(html, "limit</th>")) << html;

@@ -71,6 +71,35 @@ TEST(Report, OfARunIsThatOfTheFolder) {
   EXPECT_EQ(report.page, slurp(small_run() / "report.html"));
 }
 
+// The largest and the mean of what each scan is off by are the verdict's.
+TEST(Report, TellsHowFarEachPoseIsOff) {
+  const Folder folder;
+  const Written report = report_of(small_run(), folder);
+  const auto& errors = report.twin.at("pose_errors");
+  ASSERT_EQ(errors.size(), report.twin.at("scans").size());
+  double largest = 0, sum = 0;
+  for (const auto& error : errors) {
+    const double rms_m = error.at("rms_m");
+    largest = std::max(largest, rms_m);
+    sum += rms_m;
+    EXPECT_TRUE(holds(report.csv, "pose_error," + error.at("file").get<std::string>() + "," +
+                                      error.at("rms_m").dump() + ",m"));
+    EXPECT_TRUE(holds(report.page, "<data value=\"" + error.at("translation_m").dump() + "\">"));
+  }
+  const auto figure = [&](const char* name) {
+    for (const auto& m : report.twin.at("measurements"))
+      if (m.at("name") == name) return m.at("value").get<double>();
+    throw std::runtime_error(name);
+  };
+  EXPECT_EQ(figure("pose_error_rms"), largest);
+  EXPECT_NEAR(figure("pose_error_rms_mean"), sum / static_cast<double>(errors.size()),
+              1e-12 * largest);
+  fs::remove_all(copy_of_run(folder) / "truth");
+  const Written blind = report_of(folder / "run", folder);
+  EXPECT_TRUE(blind.twin.at("pose_errors").empty());
+  EXPECT_FALSE(holds(blind.page, "off, shift"));
+}
+
 TEST(Report, IsBelowTwoMegabytesAndLoadsNothing) {
   const std::string page = slurp(small_run() / "report.html");
   EXPECT_LT(page.size(), 2'000'000u);
@@ -193,6 +222,10 @@ TEST(Report, OfBrokenFilesIsOneError) {
     EXPECT_EQ(report.outcome.exit_code, input) << one.file << " " << one.content;
     EXPECT_TRUE(holds(report.outcome.err, "error: ")) << report.outcome.err;
     EXPECT_TRUE(holds(report.outcome.err, one.says)) << one.says << "\n" << report.outcome.err;
+    const bool is_told_of_resume =
+        one.file == "surface.ply" || one.file == "poses.tum" || holds(one.says, "not valid JSON");
+    EXPECT_EQ(holds(report.outcome.err, "--resume goes on with it"), is_told_of_resume)
+        << report.outcome.err;
     EXPECT_EQ(std::count(report.outcome.err.begin(), report.outcome.err.end(), '\n'), 1)
         << report.outcome.err;
     EXPECT_FALSE(fs::exists(folder / "out.html"));

@@ -94,6 +94,8 @@ TEST(Report, TakesADataSheetAndAStudy) {
   EXPECT_TRUE(holds(report.csv, "artefacts,probing_form,1.25e-05,m"));
   EXPECT_TRUE(holds(report.csv, "10 balls,1.5e-05,2.5e-05\n"));
   EXPECT_TRUE(holds(report.page, "Take this."));
+  EXPECT_FALSE(holds(report.page, "data sheet</a> fails"));
+  EXPECT_TRUE(holds(report.page, "<th class=\"number\">seconds</th>"));
   EXPECT_TRUE(holds(report.page, "<section id=\"tradeoff\""));
 }
 

@@ -153,6 +153,7 @@ TEST(VerifyInput, EachFileCutShortIsNamed) {
     const Outcome outcome = run_scan({"verify", run});
     EXPECT_EQ(outcome.exit_code, input) << file << outcome.err;
     EXPECT_TRUE(says(outcome, file)) << outcome.err;
+    EXPECT_TRUE(says(outcome, "--resume goes on with it")) << outcome.err;
     spill(path, whole);
   }
   std::filesystem::remove(folder / "run/scans/001.ply");

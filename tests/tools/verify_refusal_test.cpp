@@ -36,6 +36,9 @@ TEST(VerifyInput, ACloudWithAnEmptyListOfFacesIsMeasuredAsACloud) {
   }
   const Outcome info = run_scan({"info", cloud, "--json"});
   EXPECT_EQ(nlohmann::json::parse(info.out).at("kind"), "points");
+  const Outcome as_truth = run_scan({"verify", (folder / "truth.off").string(), "--truth", cloud});
+  EXPECT_EQ(as_truth.exit_code, input);
+  EXPECT_TRUE(says(as_truth, "the truth must be a surface")) << as_truth.err;
 }
 
 // What a failed reconstruction leaves is no cloud that lies well.

@@ -124,6 +124,8 @@ std::string coordinates(const ordered_json& position) {
 }  // namespace
 
 std::string limit_table(const ordered_json& measurements) {
+  const bool sampled = std::any_of(measurements.begin(), measurements.end(),
+                                   [](const auto& m) { return is_limited(m) && has_interval(m); });
   std::string rows;
   for (const auto& m : measurements) {
     if (!is_limited(m)) continue;
@@ -131,13 +133,15 @@ std::string limit_table(const ordered_json& measurements) {
     rows += "<tr class=\"limited\">" + name_cell(m) + verdict_cell(m) +
             exact_cell(m.at("value"), unit) + limit_cell(m, unit) +
             raw_cell(limit_bar(share_of_limit(m), m.value("pass", false))) +
-            interval_cell(m, unit) +
-            "</tr><tr class=\"reason\"><td colspan=\"6\"><p>Why this limit: " +
-            escaped(m.value("reason", "")) + "</p></td></tr>\n";
+            (sampled ? interval_cell(m, unit) : "") + "</tr><tr class=\"reason\"><td colspan=\"" +
+            (sampled ? "6" : "5") + "\"><p>Why this limit: " + escaped(m.value("reason", "")) +
+            "</p></td></tr>\n";
   }
   if (rows.empty()) return "";
+  std::vector<std::string> headings = {"figure", "verdict", "#value", "#limit", "used"};
+  if (sampled) headings.push_back("#95 % interval");
   return table("The limits and what was measured; the bar shows how much of a limit is used.",
-               {"figure", "verdict", "#value", "#limit", "used", "#95 % interval"}, rows);
+               headings, rows);
 }
 
 std::string figure_table(const std::string& caption, const ordered_json& measurements) {

@@ -25,17 +25,39 @@ struct Part {
   std::string id, title, content;
 };
 
+struct Limits {
+  std::size_t set = 0, met = 0;
+};
+Limits limits_of(const ordered_json& measurements) {
+  Limits limits;
+  for (const auto& m : measurements) {
+    if (!m.contains("limit") || !m.at("limit").is_number()) continue;
+    ++limits.set;
+    limits.met += m.value("pass", false);
+  }
+  return limits;
+}
+
+std::string met_text(const Limits& limits) {
+  return std::to_string(limits.met) + " of " + std::to_string(limits.set) + " limits are met.";
+}
+
 // "4 of 5 limits are met", or why nothing was judged.
 std::string verdict_sentence(const ordered_json& twin) {
-  std::size_t limits = 0, met = 0;
-  for (const auto& m : twin.at("measurements")) {
-    if (!m.contains("limit") || !m.at("limit").is_number()) continue;
-    ++limits;
-    met += m.value("pass", false);
-  }
+  const Limits limits = limits_of(twin.at("measurements"));
   if (twin.at("verdict") == "not verified") return "The run was not verified.";
-  if (limits == 0) return "The recipe sets no limit: figures without a judgement.";
-  return std::to_string(met) + " of " + std::to_string(limits) + " limits are met.";
+  if (limits.set == 0) return "The recipe sets no limit: figures without a judgement.";
+  return met_text(limits);
+}
+
+// The verdict is the run's; its scanner's data sheet may have one of its own.
+std::string sheet_note(const ordered_json& sheet) {
+  if (!sheet.is_object()) return "";
+  const Limits limits = limits_of(sheet.at("measurements"));
+  if (limits.met == limits.set) return "";
+  return "<div class=\"note\" role=\"note\"><strong>The scanner's <a href=\"#artefacts\">data "
+         "sheet</a> fails:</strong> " +
+         met_text(limits) + "</div>\n";
 }
 
 // "laser line, 20 scans, 206320 points; surface of 199182 triangles by ssd"
@@ -149,8 +171,9 @@ std::vector<Part> parts_of(const ordered_json& twin, const Drawn& drawn) {
                                            "taken over.",
                                            twin.at("measurements"))}};
   if (!twin.at("alignment").is_null())
-    parts.push_back(
-        {"poses", "Poses", pose_table(twin.at("alignment")) + pair_table(twin.at("alignment"))});
+    parts.push_back({"poses", "Poses",
+                     pose_table(twin.at("alignment"), twin.at("pose_errors")) +
+                         pair_table(twin.at("alignment"))});
   parts.push_back({"scans", "Scans", scan_table(twin.at("scans"))});
   if (twin.at("effects").is_array())
     parts.push_back({"effects", "Simulated effects", effect_table(twin.at("effects"))});
@@ -179,8 +202,8 @@ std::string page_with(const ordered_json& twin, const Drawn& drawn) {
   std::string html =
       page_head(twin.at("title").get<std::string>() + " - libscan report",
                 drawn.view.empty() ? std::vector<std::string_view>{} : viewer_scripts());
-  html += header(twin) + left_out_note(twin.at("left_out")) + contents(parts) +
-          missing_note(twin.at("missing")) + "<main>\n";
+  html += header(twin) + left_out_note(twin.at("left_out")) + sheet_note(twin.at("artefacts")) +
+          contents(parts) + missing_note(twin.at("missing")) + "<main>\n";
   for (const Part& part : parts) html += section(part.id, part.title, part.content);
   return html + "</main></body></html>\n";
 }

@@ -107,9 +107,23 @@ void hold_against_truth(const fs::path& run, RunRecord& record) {
                                     std::to_string(truth.scans.size()) + " scans of " +
                                     std::to_string(record.scans.size()));
   const RunResult result{.scans = record.scans, .world_from_scan = record.world_from_scan};
+  record.pose_errors = run_pose_errors(result, truth);
   move_world(true_world_from_world(result, truth), record);
   if (!record.surface.empty())
     record.deviations_m = deviations_m(record.surface.vertices, truth.surface);
+}
+
+void read_parts(const fs::path& run, RunRecord& record) {
+  read_scans(run, record);
+  if (!record.world_from_scan.empty()) read_steps(run, record);
+  if (fs::exists(run / "surface.ply")) {
+    SupportedMesh surface = read_supported_mesh(run / "surface.ply");
+    record.surface = std::move(surface.mesh);
+    record.support_m = std::move(surface.support_m);
+  } else {
+    record.missing.push_back("surface.ply is not there: no map of deviations can be drawn");
+  }
+  hold_against_truth(run, record);
 }
 
 }  // namespace
@@ -130,16 +144,7 @@ RunRecord read_record(const fs::path& run, const fs::path& artefacts, const fs::
   record.tradeoff =
       optional_part(tradeoff, run / "tradeoff.json", {"figure", "unit", "runs", "cases"});
   check_shape(run, record);
-  read_scans(run, record);
-  if (!record.world_from_scan.empty()) read_steps(run, record);
-  if (fs::exists(run / "surface.ply")) {
-    SupportedMesh surface = read_supported_mesh(run / "surface.ply");
-    record.surface = std::move(surface.mesh);
-    record.support_m = std::move(surface.support_m);
-  } else {
-    record.missing.push_back("surface.ply is not there: no map of deviations can be drawn");
-  }
-  hold_against_truth(run, record);
+  read_of_run([&] { read_parts(run, record); });
   return record;
 }
 

@@ -10,6 +10,7 @@
 
 #include "libscan/core/mesh.h"
 #include "libscan/core/scan.h"
+#include "libscan/verify/pose_error.h"
 #include "tools/pose_trace.h"
 
 namespace scan {
@@ -25,8 +26,9 @@ struct RunRecord {
   std::vector<Pose> world_from_scan;
   std::vector<PoseStep> steps;  // of the alignment
   Mesh surface;
-  std::vector<double> deviations_m;  // per vertex of the surface; empty: no truth
-  std::vector<double> support_m;     // per vertex: distance to the nearest point; empty: unknown
+  std::vector<PoseError> pose_errors;  // per scan; empty: no truth
+  std::vector<double> deviations_m;    // per vertex of the surface; empty: no truth
+  std::vector<double> support_m;       // per vertex: distance to the nearest point; empty: unknown
   std::vector<std::string> missing;  // what is not there and what it keeps the report from showing
 };
 

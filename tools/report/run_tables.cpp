@@ -51,8 +51,15 @@ std::string scan_table(const ordered_json& scans) {
                rows);
 }
 
-std::string pose_table(const ordered_json& alignment) {
+std::string pose_table(const ordered_json& alignment, const ordered_json& pose_errors) {
   std::string rows;
+  const auto true_error = [&](const ordered_json& scan) {
+    for (const auto& error : pose_errors)
+      if (error.at("file") == scan.value("file", ""))
+        return exact_cell(error.at("rotation_rad"), "rad") +
+               exact_cell(error.at("translation_m"), "m");
+    return cell("") + cell("");
+  };
   for (const auto& scan : alignment.at("scans"))
     rows += "<tr>" + cell(scan.value("file", "")) + cell(scan.value("stop", "")) +
             exact_cell(scan.value("rms_m", ordered_json()), "m") +
@@ -60,11 +67,21 @@ std::string pose_table(const ordered_json& alignment) {
             exact_cell(scan.value("agreement", ordered_json()), "1") +
             exact_cell(scan.value("sigma_rotation_rad", ordered_json()), "rad") +
             exact_cell(scan.value("sigma_translation_m", ordered_json()), "m") +
+            (pose_errors.empty() ? "" : true_error(scan)) +
             cell(joined_words(scan.value("weak_directions", ordered_json::array()))) + "</tr>\n";
-  return table("The poses as aligned; sigma is what noise, in free motions the guess, leaves open.",
-               {"scan", "stop", "#rms", "#paired", "#agreeing", "#sigma, turn", "#sigma, shift",
-                "motions that the data leave free"},
-               rows);
+  std::vector<std::string> headings = {"scan",      "stop",         "#rms",         "#paired",
+                                       "#agreeing", "#sigma, turn", "#sigma, shift"};
+  std::string caption =
+      "The poses as aligned. Rms is over pairs of points; paired is the share of a scan's points "
+      "that have a partner, agreeing the share of those near other scans that lie on them within "
+      "noise; sigma is what "
+      "noise, in free motions the guess, leaves open";
+  if (!pose_errors.empty()) {
+    headings.insert(headings.end(), {"#off, turn", "#off, shift"});
+    caption += "; off is how far a pose is from the true one, the world frame fitted to all";
+  }
+  headings.push_back("motions that the data leave free");
+  return table(caption + ".", headings, rows);
 }
 
 std::string pair_table(const ordered_json& alignment) {

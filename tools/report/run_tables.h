@@ -10,7 +10,8 @@
 namespace scan {
 
 std::string scan_table(const nlohmann::ordered_json& scans);
-std::string pose_table(const nlohmann::ordered_json& alignment);
+std::string pose_table(const nlohmann::ordered_json& alignment,
+                       const nlohmann::ordered_json& pose_errors);
 std::string pair_table(const nlohmann::ordered_json& alignment);
 
 // With the seconds that each effect took, by its name.

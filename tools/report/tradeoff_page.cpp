@@ -62,6 +62,7 @@ std::vector<TradeoffMark> marks_of(const ordered_json& tradeoff) {
 }
 
 std::string rounded(const ordered_json& value) {
+  if (!value.is_number()) return "";
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", number(value));
   return text;
@@ -80,6 +81,7 @@ std::string heads(const ordered_json& runs) {
     html += "<th>" + escaped(key) + "</th>";
   for (const char* number : {"error", "least", "most", "runs"})
     html += std::string("<th class=\"number\">") + number + "</th>";
+  html += "<th class=\"number\">seconds</th>";
   for (const std::string& stage : stages_of(runs))
     html += "<th class=\"number\">" + stage + ", s</th>";
   return html + "<th class=\"number\">peak, MiB</th><th>front</th></tr>";
@@ -99,7 +101,7 @@ std::string run_table(const ordered_json& tradeoff, const std::string& unit) {
     return value.is_number() ? readable_value(value.get<double>(), unit) : "unknown";
   };
   std::string html = heads(runs);
-  const std::size_t columns = runs.at(0).at("settings").size() + stages.size() + 6;
+  const std::size_t columns = runs.at(0).at("settings").size() + stages.size() + 7;
   ordered_json in = "";
   for (const auto& run : runs) {
     if (run.at("case") != in) {
@@ -111,7 +113,8 @@ std::string run_table(const ordered_json& tradeoff, const std::string& unit) {
     for (const auto& [key, value] : run.at("settings").items()) html += cell(text_of(value));
     html += cell(error(run.at("error_m")), true) + cell(error(run.at("least_error")), true) +
             cell(error(run.at("most_error")), true) +
-            cell(std::to_string(run.at("count").get<std::size_t>()), true);
+            cell(std::to_string(run.at("count").get<std::size_t>()), true) +
+            cell(rounded(run.at("seconds")), true);
     for (const std::string& stage : stages) {
       const ordered_json cost = run.at("stages").value(stage, ordered_json::object());
       html += cell(rounded(cost.value("seconds", ordered_json())), true);
@@ -143,11 +146,12 @@ std::string source_table(const ordered_json& cases, const std::string& unit) {
   for (const auto& in : cases) rows += source_rows(in, unit, cases.size() > 1);
   if (rows.empty()) return "";
   return "<h3>Where the error comes from</h3><p>Runs of the advised settings with the same random "
-         "streams, spared one source after another.</p><table><tr>" +
+         "streams, spared one source after another.</p><div class=\"wide\" "
+         "tabindex=\"0\"><table><tr>" +
          std::string(cases.size() > 1 ? "<th>case</th>" : "") +
          "<th>source</th><th class=\"number\">share of the mean square</th>"
          "<th class=\"number\">error</th></tr>" +
-         rows + "</table>";
+         rows + "</table></div>";
 }
 
 std::string plot_of(const ordered_json& tradeoff) {

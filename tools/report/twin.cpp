@@ -54,6 +54,16 @@ ordered_json deviation_json(const RunRecord& record) {
           {"call_outs", worst}};
 }
 
+ordered_json pose_errors_json(const RunRecord& record) {
+  ordered_json errors = ordered_json::array();
+  for (std::size_t i = 0; i < record.pose_errors.size(); ++i)
+    errors.push_back({{"file", "scans/" + scan_name(i) + ".ply"},
+                      {"rotation_rad", record.pose_errors[i].rotation_rad},
+                      {"translation_m", record.pose_errors[i].translation_m},
+                      {"rms_m", record.pose_errors[i].moved_points_rms_m}});
+  return errors;
+}
+
 ordered_json cost_json(const ordered_json& timings) {
   ordered_json seconds = ordered_json::object();
   for (const auto& [stage, value] : timings.items())
@@ -132,6 +142,7 @@ ordered_json report_twin(const RunRecord& record) {
           {"deviation", deviation_json(record)},
           {"scans", scans},
           {"alignment", record.alignment},
+          {"pose_errors", pose_errors_json(record)},
           {"reconstruction", record.reconstruction},
           {"effects", record.effects},
           {"artefacts", record.artefacts},
@@ -152,6 +163,8 @@ std::string report_csv(const ordered_json& twin) {
     for (const auto& place : deviation.at("call_outs"))
       csv += plain_line("call_out", place.at("number").dump(), place.at("deviation_m"), "m");
   }
+  for (const auto& error : twin.at("pose_errors"))
+    csv += plain_line("pose_error", error.at("file"), error.at("rms_m"), "m");
   if (const ordered_json& sheet = twin.at("artefacts"); !sheet.is_null())
     csv += measurement_lines("artefacts", sheet.at("measurements"));
   return csv;
