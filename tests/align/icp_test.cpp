@@ -206,8 +206,9 @@ TEST(Icp, NormalsAreFittedWhereTheCloudsHaveNone) {
   RandomStream random(21, 0, 0);
   const Pose guess = test::random_pose(random, 0.03, 0.03);
   for (const IcpMethod method : icp_methods) {
-    const IcpResult result = icp(source, target, guess, {.method = method});
-    EXPECT_EQ(result.stop, Stop::converged) << name_of(method);
+    // Point-to-point creeps: rounding decides whether the usual 60 are enough.
+    const IcpResult result = icp(source, target, guess, {.method = method, .max_iterations = 200});
+    EXPECT_EQ(result.stop, Stop::converged) << name_of(method) << result.iterations;
     // Fits over 16 points at a spacing of 0.016 m miss the surface by its curvature times the
     // square of their reach, 3 / m * (0.036 m)^2 / 8 = 0.5 mm; point-to-point is held by the
     // points.

@@ -82,6 +82,16 @@ TEST(GraphEdge, IsAsSureAsTheGuessAlongWhatIsOpen) {
   EXPECT_TRUE(about_centre.isApprox(should, 1e-5)) << about_centre;
 }
 
+// Less than 1e-12 of what it fixes best a pair leaves open; more it fixes, if badly.
+TEST(GraphEdge, TakesARoundedShareForNothing) {
+  constexpr double guess_m = 0.02;
+  for (const auto& [share, is_open] : {std::pair(1e-9, false), {1e-14, true}}) {
+    Matrix6 information = 1e6 * Matrix6::Identity();
+    information(5, 5) *= share / (size_m * size_m);  // shifts count at the size
+    EXPECT_EQ(edge_of(information, guess_m).information(5, 5) > 0.5 / (guess_m * guess_m), is_open);
+  }
+}
+
 // Pairs that moved by 1, 3 and 9 mm along z, the one motion that they fix, and any way along those
 // that they leave open; one that fixes nothing says nothing.
 TEST(GuessSigma, IsTheMedianAlongWhatPairsFix) {

@@ -101,6 +101,13 @@ TEST(Delaunay, IsTheSameWhereverMemoryLies) {
   expect_the_same_wherever_memory_lies(delaunay, integers_about_a_sphere());
 }
 
+// All edges of its front are of equal value, and each counts.
+TEST(Delaunay, ClosesABoxOfManyTies) {
+  const Mesh box = delaunay(lattice_on_a_box()).surface;
+  EXPECT_TRUE(edge_census(box).watertight);
+  EXPECT_NEAR(volume_m3(box), 16 * 16 * 16, 1e-9);
+}
+
 TEST(ScaleSpace, IsTheSameWhereverMemoryLies) {
   expect_the_same_wherever_memory_lies(scale_space, lattice_on_a_box());
   expect_the_same_wherever_memory_lies(scale_space, lattice_on_a_plane());
