@@ -146,11 +146,13 @@ TEST(CostTable, TellsEffectsThatTookTimeFromThoseSpared) {
       cost_table({{"machine", "m"},
                   {"threads", 2},
                   {"seconds", {{"align", 1.5}}},
-                  {"effect_seconds", {{"speckle", 2.0}, {"fog", 3.0}, {"motion", 0.0}}}},
+                  {"effect_seconds", {{"speckle", 1234.0}, {"fog", 26316.0}, {"motion", 0.0}}}},
                  effects);
   EXPECT_TRUE(holds(html, "effect speckle, estimated")) << html;
   EXPECT_TRUE(holds(html, "effect fog, had it been on")) << html;
   EXPECT_FALSE(holds(html, "motion")) << html;
+  for (const char* took : {">1.5 s<", ">1234 s<", ">7.31 h<"})
+    EXPECT_TRUE(holds(html, took)) << html;
 }
 
 }  // namespace

@@ -30,8 +30,14 @@ std::string unit_of(const std::string& key) {
 
 std::string seconds_text(const ordered_json& value) {
   if (!value.is_number()) return "unknown";
+  const double seconds = value.get<double>();
+  const bool in_hours = seconds >= 3599.5;
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g s", value.get<double>());
+  std::snprintf(text, sizeof text,
+                in_hours          ? "%.3g h"
+                : seconds < 999.5 ? "%.3g s"
+                                  : "%.0f s",
+                in_hours ? seconds / 3600 : seconds);
   return text;
 }
 
@@ -147,7 +153,7 @@ std::string cost_table(const ordered_json& cost, const ordered_json& effects) {
         row("effect " + effect + (on.contains(effect) ? ", estimated" : ", had it been on"),
             seconds_text(value));
   return "\n<table id=\"seconds\"><thead><tr><th scope=\"col\">what</th><th scope=\"col\" "
-         "class=\"number\">seconds</th></tr></thead><tbody>" +
+         "class=\"number\">how long</th></tr></thead><tbody>" +
          rows + "</tbody></table>\n";
 }
 
