@@ -64,7 +64,7 @@ tar -xzf "$out/packages/libcgal-demo/usr/share/doc/libcgal-dev/data.tar.gz" -C "
   --strip-components=2 data/points_3/hippo1.ply data/points_3/hippo2.ply
 # The two views are some 43 degrees apart, and nothing is known of their poses.
 "$scan" align "$hippo/hippo1.ply" "$hippo/hippo2.ply" "$hippo/aligned" --global
-"$scan" reconstruct "$hippo/aligned/aligned.ply" "$hippo/surface.ply" --depth 7
+"$scan" reconstruct "$hippo/aligned/aligned.ply" "$hippo/surface.ply" --method auto
 "$scan" info "$hippo/surface.ply"
 
 title "Where to look"
