@@ -27,6 +27,9 @@ constexpr double whole_share = 0.8;
 // A beam one and a half widths beyond an edge leaves 0.32 of its height on it.
 constexpr double tail_share = 0.3;
 
+// Places of stripes that are laid farther apart tell neither form nor brightness at this one.
+constexpr double near_widths = 10;
+
 }  // namespace
 
 double stripe_shift_px(const LitPlace& here, const LitPlace& one, const LitPlace& other,
@@ -147,6 +150,8 @@ std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<co
   if (!one || !other) {
     const LitPlace& inner = one ? *one : *other;
     if (here.width_px < whole_share * inner.width_px) return std::nullopt;
+    const double apart_px = std::abs(inner.column_px - here.column_px);
+    if (apart_px > near_widths * inner.width_px) return perhaps_cut;
     if (here.height_e < tail_share * inner.height_e) return std::nullopt;
     if (is_at_rim(walk, inner.width_px, one ? 1 : -1)) return std::nullopt;
     return perhaps_cut;

@@ -50,13 +50,13 @@ ShiftSlopes shift_slopes(const LitPlace& here, const LitPlace& one, const LitPla
 // Of `ray` (of step * rows + row), by places of the same row that are seen at least four widths
 // away. Where the body is not seen that far to one side the stripe may be cut: then 0.15 widths are
 // unknown, but none is returned if it has less than 0.8 of the width of the one on the other side,
-// as one that is cut within a width of its centre, or beside it, or 0.3 of its height, as the tail
-// of a beam that is past the edge, or if a round body's rim is near (is_at_rim): then its place is
-// the edge's and no longer the plane's. None as well if it has less
-// than 0.8 of the width of either of two, whose mean a stripe that is whole has nearly: a tail on
-// an edge that the plane of light has passed, another body behind. And none where steps a width and
-// more apart see the body on neither side, so that it may be such a tail; where the sweep stands
-// still, or has no other step, 0.15.
+// as one that is cut within a width of its centre, or beside it: then its place is the edge's and
+// no longer the plane's. Nor if that one is less than ten widths away and it has less than 0.3 of
+// its height, as the tail of a beam that is past the edge, or a round body's rim is near
+// (is_at_rim). None as well if it has less than 0.8 of the width of either of two, whose mean a
+// stripe that is whole has nearly: a tail on an edge that the plane of light has passed, another
+// body behind. And none where steps a width and more apart see the body on neither side, so that it
+// may be such a tail; where the sweep stands still, or has no other step, 0.15.
 std::optional<StripeShift> stripe_shift(const StripeImages& frames, std::span<const LitRay> rays,
                                         std::size_t ray);
 

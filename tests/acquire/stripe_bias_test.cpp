@@ -128,6 +128,17 @@ TEST(StripeShift, OfATailBesideAHoleIsNotKnown) {
   }
 }
 
+// Stripes two columns apart of which each is 0.25 or 0.15 wide are 8 or 13 widths from each other.
+TEST(StripeShift, OfStripesLaidFarApartIsNotJudgedByTheirHeights) {
+  for (const double width_px : {0.25, 0.15}) {
+    Sweep sweep = sweep_over_a_plane(25);
+    for (LitRay& ray : sweep.rays) ray.width_px = width_px;
+    sweep.rays[12] = {};
+    sweep.rays[11].height_e = 0.29 * 1000;
+    EXPECT_EQ(stripe_shift(sweep.frames, sweep.rays, 11).has_value(), width_px < 0.2) << width_px;
+  }
+}
+
 // Where the plane of light goes past an edge to a body behind, its tail still lights the edge: of
 // that stripe less is left than of those on either side, which are seen.
 TEST(StripeShift, OfATailBetweenTwoBodiesIsNotKnown) {
