@@ -145,8 +145,7 @@ void test_faces(std::vector<SheetLine>& sheet, Bench& bench, const synth::Artefa
             [&](const Select& select) { return flatness_errors(first_bodies(plates, select)); });
   const auto places = plate_places(sized, bench.world_from_scanner());
   add_lines(sheet, bench, plates, [&](const Select& select) {
-    std::vector<PlacedPlate>
-        placed;  // the first three stand one behind the other, the nearest last
+    std::vector<PlacedPlate> placed;  // the three in a line, of which the nearest is the last
     for (const std::size_t i : {2, 1, 0}) {
       const Pose plate = in_scanner(bench, places[i].front());
       const double half_m =
@@ -215,8 +214,7 @@ double reading_transfer(const Recipe& recipe, double period_m, double depth_m) {
   return decoding::window_transfer(period_m * pair->calibration.focal_px / depth_m, window_px / 2);
 }
 
-// Draws know the noise of each ray alone: takes from the waves they lie about what the reading
-// does.
+// Draws know what scatters alone: takes from the waves they lie about what the reading does.
 void flatten_truth(const Recipe& recipe, WaveSeries& series) {
   const double period_m = series.periods_m.back(),
                height_m = synth::wave_amplitude_m(period_m) *
@@ -224,8 +222,9 @@ void flatten_truth(const Recipe& recipe, WaveSeries& series) {
                                                 series.scanner_from_plate.translation().z()));
   const Pose plate_from_scanner = series.scanner_from_plate.inverse();
   const Eigen::Vector3d up = series.scanner_from_plate.linear().col(2);
-  for (Eigen::Vector3d& x : series.bodies.back().stated.front().truth)
-    x -= height_m * std::cos(2 * std::numbers::pi * (plate_from_scanner * x).x() / period_m) * up;
+  for (StatedPoints& stated : series.bodies.back().stated)
+    for (Eigen::Vector3d& x : stated.truth)
+      x -= height_m * std::cos(2 * std::numbers::pi * (plate_from_scanner * x).x() / period_m) * up;
 }
 
 WaveSeries wave_series(const Recipe& recipe, Bench& bench, const synth::Artefacts& sized,

@@ -15,6 +15,11 @@ struct RefinedDisparity {
   Image<float> correlation;  // of the two windows at the disparity
 };
 
+// Width of the window that refine() takes, px.
+inline int refinement_window_px(int block_px) {
+  return 2 * (block_px / 2 + 1) + 1;
+}
+
 // Newton's method on sum (L(x, y) - R(x - d(x, y), y) - c)^2 over a window about each pixel (Lucas
 // and Kanade 1981), c the images' difference in brightness, R between columns by cubic convolution
 // (Keys 1981). Within the window d follows the slope of the disparity map, and only pixels of the
@@ -28,10 +33,6 @@ struct RefinedDisparity {
 // slopes, which hold noise too and are sampled between columns, where interpolation leaves less of
 // it. Of the matcher: by how far it scatters about a plane, and its lean towards whole columns. Not
 // a calibration error.
-// Width of that window, px.
-inline int refinement_window_px(int block_px) {
-  return 2 * (block_px / 2 + 1) + 1;
-}
 RefinedDisparity refine(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                         const Image<float>& disparity_px, int block_px, double match_sigma_px);
 

@@ -23,8 +23,7 @@ bool is_ruled_out(const PreparedScans& scans, const PoseEdge& edge, const KnownG
   const Pose& target = guesses.world_from_local[edge.target];
   const Pose by_pair = target * edge.target_from_source;
   const Eigen::Vector3d centre = source.translation();
-  Vector6 twist = log(make_pose(by_pair.linear() * source.linear().transpose(), {0, 0, 0}));
-  twist.tail<3>() = by_pair.translation() - centre;
+  const Vector6 twist = twist_to(by_pair, source, 1);
   Matrix6 covariance = Matrix6::Zero();
   for (const std::size_t scan : {edge.source, edge.target}) {
     const Eigen::Vector3d scanner =

@@ -7,7 +7,6 @@
 #include "libscan/align/joint_refinement.h"
 
 namespace scan {
-namespace {
 
 Vector6 twist_to(const Pose& guess, const Pose& pose, double size_m) {
   const Pose turn = make_pose(guess.linear() * pose.linear().transpose(), Eigen::Vector3d::Zero());
@@ -15,8 +14,6 @@ Vector6 twist_to(const Pose& guess, const Pose& pose, double size_m) {
   twist.tail<3>() = (guess.translation() - pose.translation()) / size_m;
   return twist;
 }
-
-}  // namespace
 
 Matrix6 covariance_of(const GuessSigma& sigma, const Eigen::Vector3d& arm_m, double size_m) {
   Vector6 variances;

@@ -29,6 +29,10 @@ struct GuessPrior {
   bool known() const { return !information.empty(); }
 };
 
+// The turn about a pose's origin, and then the shift of it in units of `size_m`, that take it to a
+// guess.
+Vector6 twist_to(const Pose& guess, const Pose& pose, double size_m);
+
 // Of a turn about a centre and a shift of it in units of `size_m`, by the error of a guess: a turn
 // w about the scanner moves the centre by w x `arm_m`, the way there from the scanner. A third of
 // each square falls to each axis.

@@ -197,8 +197,9 @@ bool lists_no_face(const std::filesystem::path& path) {
 }
 
 bool is_emptied_surface(const std::filesystem::path& path) {
-  if (!lists_no_face(path)) return false;
+  if (ending_of(path) != ".ply") return false;
   const Ply ply = ply_without_values(path);
+  if (face_count(ply) != 0u) return false;
   const PlyElement* vertex = ply.find("vertex");
   return !vertex || vertex->count == 0 || vertex->find("support_m");
 }

@@ -24,8 +24,8 @@ Ball ball_around(const Bounds& box) {
   return {box.center(), (0.5 + 1e-6) * box.diagonal().norm()};
 }
 
-// The field never exceeds the distance, so a step of its size
-// cannot skip a surface; the least step passes through it, and misses only shorter chords.
+// The field never exceeds the distance, so a step of its size cannot skip a surface; the least step
+// passes through it, and misses only shorter chords.
 void add_crossings(const PlacedShape& shape, const Line& line, double length_m,
                    std::vector<SurfaceSample>& crossings) {
   const double least_m = 5e-7 * length_m;

@@ -68,10 +68,7 @@ TEST(PhaseCameraSigma, IsThatOfTheErrors) {
 // As above. The decoder's sigma follows the fitted height, a few per cent off for 1e3 electrons; it
 // enters squared, and an underestimate weighs more: 3 (1 / sqrt(N))^2 = 3e-3.
 TEST(PulsedLidarSigma, IsThatOfTheErrors) {
-  PulsedLidar s;
-  s.pattern = RasterPattern{.rows = 60, .columns = 80, .height_rad = 0.5, .width_rad = 0.7};
-  s.sensor = {.gain_e_per_dn = 1, .offset_dn = 50, .read_noise_e = 5, .bits = 16};
-  s.max_range_m = 30;
+  const PulsedLidar s = stated_lidar(1);
   const Scene scene = plane_target(12, grey()).scene;
   const Normalised errors =
       normalised_errors(noisy_scan(s, scene), true_rays(s, RayCaster(scene), Pose::Identity()));
@@ -84,13 +81,7 @@ TEST(PulsedLidarSigma, IsThatOfTheErrors) {
 // (laser_line_range_test.cpp) where the noise is 1 / sqrt(5000) px and more: 0.3 sigma, 0.1
 // squared.
 TEST(LaserLineSigma, IsThatOfTheErrors) {
-  LaserLine s;
-  s.camera = {
-      .width_px = 160, .height_px = 60, .fx_px = 400, .fy_px = 400, .cx_px = 79.5, .cy_px = 29.5};
-  s.beam_radius_m = 8e-4;
-  s.steps = 31;
-  s.step_m = 2e-3;
-  s.sensor = {.gain_e_per_dn = 2, .offset_dn = 50, .read_noise_e = 10, .bits = 14};
+  const LaserLine s = stated_laser_line(1);
   const Scene scene = plane_target(0.18, grey()).scene;
   const RawFrames raw =
       render(s, RayCaster(scene), Pose::Identity(), {.seed = 17, .scan = 1}, sensor_effects).frames;
