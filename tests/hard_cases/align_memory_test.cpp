@@ -15,6 +15,7 @@ namespace {
 // What a call takes beyond what was there before.
 double peak_mib(std::size_t points, IcpMethod method) {
   const auto [source, target] = test::split(test::bumpy_surface(points, 1), 2);
+  malloc_trim(0);  // pages of the call before would hide what this one takes
   restart_peak_memory();
   const double before_mib = peak_memory_mib();
   icp(source, target, Pose::Identity(), {.method = method, .max_iterations = 5});
@@ -26,7 +27,8 @@ double peak_mib(std::size_t points, IcpMethod method) {
 // hand out, less of it left the second time; a part that grew with the square would take 16 times
 // as much.
 TEST(AlignMemory, IsLinearInThePoints) {
-  const ThreadLimit limit(2);
+  const ThreadLimit limit(
+      1);  // of two, what the allocator holds back depends on when they allocate
   for (const IcpMethod method : {IcpMethod::symmetric, IcpMethod::plane_to_plane}) {
     const double few = peak_mib(40'000, method), many = peak_mib(160'000, method);
     if (few <= 0) GTEST_SKIP() << "this kernel does not let a process reset its peak memory";
