@@ -25,10 +25,9 @@ double peak_mib(std::size_t points, IcpMethod method) {
 // Four times the points: vectors that double as they grow do so alike, and what does not grow with
 // the points only lowers the larger peak's share. The allocator has up to some MiB of its own to
 // hand out, less of it left the second time; a part that grew with the square would take 16 times
-// as much.
+// as much. On one thread, as what the allocator holds back of two depends on when they allocate.
 TEST(AlignMemory, IsLinearInThePoints) {
-  const ThreadLimit limit(
-      1);  // of two, what the allocator holds back depends on when they allocate
+  const ThreadLimit limit(1);
   for (const IcpMethod method : {IcpMethod::symmetric, IcpMethod::plane_to_plane}) {
     const double few = peak_mib(40'000, method), many = peak_mib(160'000, method);
     if (few <= 0) GTEST_SKIP() << "this kernel does not let a process reset its peak memory";
